@@ -113,7 +113,7 @@ pub fn hanging_found(
     let pinned = |row, _| row == 0;
     let sheet = Sheet::new(size, spacing as f32, *material, step, place, pinned);
     let weights: Vec<f64> = sheet
-        .grid
+        .grid()
         .cells()
         .map(|(row, _)| shape[row as usize])
         .collect();
@@ -157,7 +157,7 @@ pub fn membrane_found(
     let pinned = |row, column| on_frame(row) || on_frame(column);
     let size = (side, side);
     let sheet = Sheet::new(size, spacing as f32, *material, step, place, pinned);
-    let cells = sheet.grid.cells();
+    let cells = sheet.grid().cells();
     let weights: Vec<f64> = cells
         .map(|(row, column)| wave(row) * wave(column))
         .collect();
@@ -168,7 +168,7 @@ pub fn membrane_found(
 /// Mean of several periods (s) of the part of the motion along z that has a shape, from where it passes zero between two
 /// sub-steps. Infinite if it does not within four times as long as it should take.
 fn period(mut sheet: Sheet, shape: &[f64], truth: f64, mut control: Option<Control>) -> f64 {
-    let needed = Substepping::needed(sheet.grid.columns() as usize, sheet.step.seconds);
+    let needed = Substepping::needed(sheet.grid().columns() as usize, sheet.step.seconds);
     let weights: Vec<f64> = sheet
         .masses()
         .iter()

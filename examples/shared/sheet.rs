@@ -27,7 +27,7 @@ pub fn threads(stretch: f32, shear: f32) -> ClothMaterial {
 
 /// The sheet, its springs and its solver.
 pub struct Sheet {
-    pub grid: ClothGrid,
+    pub surface: Surface,
     pub material: ClothMaterial,
     pub particles: ClothParticles,
     pub springs: Vec<Spring>,
@@ -54,16 +54,40 @@ impl Sheet {
         let grid = Cloth::new(columns, rows, spacing)
             .grid(Vec3::ONE)
             .expect("a valid grid");
-        let surface = Surface::of_grid(&grid);
+        let cell = |index: usize| (index as u32 / columns, index as u32 % columns);
+        Self::of_surface(
+            Surface::of_grid(&grid),
+            material,
+            step,
+            |index| {
+                let (row, column) = cell(index);
+                placed(row, column)
+            },
+            |index| {
+                let (row, column) = cell(index);
+                pinned(row, column)
+            },
+        )
+    }
+
+    /// The same of any surface, by the particles' indices.
+    ///
+    /// # Panics
+    /// If there is no such cloth.
+    pub fn of_surface(
+        surface: Surface,
+        material: ClothMaterial,
+        step: TickStep,
+        placed: impl Fn(usize) -> Vec3,
+        pinned: impl Fn(usize) -> bool,
+    ) -> Self {
         let mut particles = ClothParticles::at_rest(&surface, &material).expect("a valid material");
-        for (row, column) in grid.cells() {
-            particles
-                .set_position((row, column), placed(row, column))
-                .expect("it exists");
-            if pinned(row, column) {
-                particles
-                    .set_inverse_mass((row, column), 0.0)
-                    .expect("it exists");
+        for index in 0..surface.len() {
+            let is_there = particles.set_position(index, placed(index));
+            is_there.expect("it exists");
+            if pinned(index) {
+                let is_there = particles.set_inverse_mass(index, 0.0);
+                is_there.expect("it exists");
             }
         }
         let springs = Springs::of_surface(&surface, &material);
@@ -81,7 +105,7 @@ impl Sheet {
             solver,
             masses: particles.inverse_masses().map(mass).collect(),
             springs: springs.to_vec(),
-            grid,
+            surface,
             material,
             particles,
             step: TickStep {
@@ -92,12 +116,19 @@ impl Sheet {
         }
     }
 
+    /// The grid that it is made of.
+    ///
+    /// # Panics
+    /// If it is a mesh.
+    pub fn grid(&self) -> &ClothGrid {
+        self.surface.as_grid().expect("a grid")
+    }
+
     /// With tethers from now on, or without.
     pub fn tethered(mut self, with: bool) -> Self {
         if with {
-            let surface = Surface::of_grid(&self.grid);
             let gravity = GRAVITY as f32;
-            let tethers = Tethers::new(&surface, &self.material, &self.particles, gravity);
+            let tethers = Tethers::new(&self.surface, &self.material, &self.particles, gravity);
             self.solver.set_tethers(tethers);
         }
         self

@@ -41,6 +41,7 @@ mod scaling;
 #[path = "../../examples/ball/scene.rs"]
 mod scene;
 mod stability;
+mod surfaces;
 mod table1;
 mod timed;
 mod waves;

@@ -1,5 +1,6 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
+mod by_particle;
 mod cut;
 mod error;
 mod grain;
@@ -47,6 +48,7 @@ pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttr
 pub use tearing::ClothTearing;
 pub use tears::ClothTears;
 
+pub(crate) use by_particle::ByParticle;
 pub(crate) use cut::Cut;
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;

@@ -241,7 +241,6 @@ fn random_blocks_slide_to_a_stop() {
         );
         tick(&mut app, 64);
         let speed = velocity(&app, thing).length();
-        // The engine's gravity of a tick.
         assert!(speed < 1.0e-3, "{seed}: {speed} m/s at last");
     }
 }

@@ -46,7 +46,7 @@ fn held(sheet: &mut Sheet, control: &mut Control, tolerance: f32) {
         stretch: tolerance,
         max_substeps: 100,
     };
-    let needed = Substepping::needed(sheet.grid.columns() as usize, SECONDS);
+    let needed = Substepping::needed(sheet.grid().columns() as usize, SECONDS);
     sheet.step.substeps = control.substeps(substepping, needed);
     let backup = sheet.particles.clone();
     loop {

@@ -101,9 +101,9 @@ fn random_drops_gain_no_energy() {
         }
         let name = format!(
             "drop {number}: {} × {}, {:.3} m apart, {:?}, {} sub-steps, {} pins: gains {:.2} % of {scale:.3} J",
-            sheet.grid.columns(),
-            sheet.grid.rows(),
-            sheet.grid.spacing().x,
+            sheet.grid().columns(),
+            sheet.grid().rows(),
+            sheet.grid().spacing().x,
             [
                 sheet.material.stretch_compliance,
                 sheet.material.shear_compliance

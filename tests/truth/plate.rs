@@ -148,7 +148,7 @@ fn most_of(size: (u32, u32), rigidity: f32, substeps: u32, speed: f32) -> [f64; 
     let place = |row: u32, column: u32| SPACING * Vec3::new(column as f32, 0.0, row as f32);
     let mut sheet = Sheet::new(size, SPACING, material, step, place, |_, _| false);
     sheet.step.acceleration = Vec3::ZERO;
-    for (row, column) in sheet.grid.cells() {
+    for (row, column) in sheet.grid().cells() {
         let [row, column] = [row, column].map(|index| index as f32);
         let waves = (0.3 * column + 0.2 * row).sin() + (1.1 * row).sin() * (0.9 * column).cos();
         let own = 0.1 * (7.0 * row + 1.3 * column).sin();

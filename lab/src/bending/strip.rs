@@ -42,13 +42,13 @@ pub fn drop_of_chords([columns, rows]: [u32; 2], substeps: u32) -> f64 {
         ..threads(0.0, 1.0e-3)
     };
     let mut sheet = strip([columns, rows], substeps, material);
-    let spacing = sheet.grid.spacing().x;
+    let spacing = sheet.grid().spacing().x;
     let mut springs = Vec::new();
-    for (row, column) in sheet.grid.cells() {
+    for (row, column) in sheet.grid().cells() {
         if column + 2 < columns {
             springs.push(Spring {
                 kind: SpringKind::Bend,
-                ends: [column, column + 2].map(|column| sheet.grid.index(row, column)),
+                ends: [column, column + 2].map(|column| sheet.grid().index(row, column)),
                 rest_length: 2.0 * spacing,
                 compliance: 0.0,
             });
@@ -78,7 +78,7 @@ fn settle(mut sheet: Sheet) -> f64 {
     for _ in 0..TICKS {
         sheet.tick(|_, _| {});
     }
-    let (rows, end) = (sheet.grid.rows(), sheet.grid.columns() - 1);
+    let (rows, end) = (sheet.grid().rows(), sheet.grid().columns() - 1);
     let heights = (0..rows).map(|row| sheet.particles.position((row, end)).expect("it exists").y);
     -f64::from(heights.sum::<f32>() / rows as f32 / LENGTH)
 }

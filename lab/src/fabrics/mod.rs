@@ -3,16 +3,16 @@
 //! A mesh has to be as true as a grid. Where it is not, this is how far it is off.
 
 mod play;
-mod surfaces;
 mod truths;
 
 use serde::{Deserialize, Serialize};
 
-use self::{surfaces::Made, truths::Truth};
+use self::truths::Truth;
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
     experiment::{Experiment, Run, Table},
     measure::distinct,
+    surfaces::Made,
 };
 
 /// The error that is allowed of a grid.

@@ -4,7 +4,8 @@ use bevy::math::Vec3;
 use bevy_drape::cloth::{ClothGrain, ClothMaterial, ClothStiffening, ClothWeft};
 use examples_shared::{modes::hanging_period, sheet::GRAVITY};
 
-use super::{play::Play, surfaces::Made};
+use super::play::Play;
+use crate::surfaces::Made;
 
 /// A measured value, and the expected one.
 pub struct Found {

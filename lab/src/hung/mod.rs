@@ -1,7 +1,8 @@
 //! How it is hung: stretch and time of a cloth of rigid threads for six ways of pinning it.
 //!
 //! 64² particles, 2 m × 2 m, 0.15 kg/m², threads and diagonals rigid, no bending, no damping: it lies flat at rest and is let go,
-//! for three seconds of 60 ticks each. By its settings by default, but for the sub-steps.
+//! for three seconds of 60 ticks each. By its settings by default, but for the sub-steps. A grid, and a mesh of triangles that lie
+//! in all directions.
 
 mod play;
 
@@ -13,18 +14,31 @@ use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series, number},
     experiment::{Experiment, Run, Table},
     measure::{distinct, median},
+    surfaces::Made,
 };
 
 const TOLERANCE: &str = "tolerance 0.01";
+
+/// The structures of the cloth.
+const MADE: [Made; 2] = [Made::Grid, Made::Delaunay];
+
+/// The series of a panel: name, structure, style and value.
+const SERIES: [(&str, Made, usize, fn(&Row) -> f64); 4] = [
+    ("grid, largest", Made::Grid, 0, |row| row.max_stretch),
+    ("grid, RMS", Made::Grid, 5, |row| row.rms_stretch),
+    ("mesh, largest", Made::Delaunay, 1, |row| row.max_stretch),
+    ("mesh, RMS", Made::Delaunay, 4, |row| row.rms_stretch),
+];
 
 /// Energy that nothing gave, at most, as a part of what the cloth's weight can do.
 const MAX_GAIN: f64 = 0.01;
 
 pub struct Hung;
 
-/// One way of pinning, and one choice of sub-steps.
+/// One structure, one way of pinning, and one choice of sub-steps.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
+    surface: String,
     pins: String,
     particles: usize,
     /// Sub-steps a tick, or the largest stretch that is asked for.
@@ -76,19 +90,21 @@ impl Experiment for Hung {
             format!("medians over {starts}, in each another particle 1 µm aside; of energy_gain the largest"),
         );
         let choices = choices(run.quick);
-        run.begin(Self::NAME, PINS.len() * choices.len());
+        run.begin(Self::NAME, MADE.len() * PINS.len() * choices.len());
         let mut rows = Vec::new();
-        for (pins, pinned) in PINS {
+        let hung = MADE.iter().flat_map(|made| PINS.map(|pins| (*made, pins)));
+        for (made, (pins, pinned)) in hung {
             for (choice, substepping) in &choices {
                 let outcomes: Vec<_> = (0..starts)
-                    .map(|start| play(pinned, *substepping, start))
+                    .map(|start| play(made, pinned, *substepping, start))
                     .collect();
                 let of = |value: fn(&play::Outcome) -> f64| {
                     median(&outcomes.iter().map(value).collect::<Vec<_>>())
                 };
                 rows.push(Row {
+                    surface: made.name().into(),
                     pins: pins.into(),
-                    particles: (SIDE * SIDE) as usize,
+                    particles: outcomes[0].particles,
                     choice: choice.clone(),
                     ms_per_tick: of(|outcome| outcome.ms_per_tick),
                     max_stretch: of(|outcome| outcome.max_stretch),
@@ -107,11 +123,11 @@ impl Experiment for Hung {
     fn check(rows: &[Row]) -> Result<(), String> {
         let ways = distinct(rows.iter().map(|row| row.pins.as_str()));
         let choices = distinct(rows.iter().map(|row| row.choice.as_str()));
-        if ways.len() != PINS.len() || rows.len() != ways.len() * choices.len() {
-            return Err("each choice for each way of pinning".into());
+        if ways.len() != PINS.len() || rows.len() != MADE.len() * ways.len() * choices.len() {
+            return Err("each choice for each surface and way of pinning".into());
         }
         for row in rows {
-            let name = format!("{}, {}", row.pins, row.choice);
+            let name = format!("{}, {}, {}", row.surface, row.pins, row.choice);
             let is_valid = row.ms_per_tick > 0.0
                 && row.rms_stretch > 0.0
                 && row.rms_stretch <= row.max_stretch.abs().max(1.0)
@@ -128,14 +144,21 @@ impl Experiment for Hung {
                 ));
             }
         }
-        for pins in ways {
-            let fixed: Vec<&Row> = fixed(rows, pins).collect();
+        let hung = MADE
+            .iter()
+            .flat_map(|made| ways.iter().map(|pins| (*made, pins)));
+        for (made, pins) in hung {
+            let fixed: Vec<&Row> = fixed(rows, made, pins).collect();
             if let [few, .., many] = fixed[..]
                 && many.rms_stretch > few.rms_stretch
             {
                 return Err(format!(
-                    "{pins}: {} sub-steps leave an RMS stretch of {}, {} of {}",
-                    many.choice, many.rms_stretch, few.choice, few.rms_stretch
+                    "{}, {pins}: {} sub-steps leave an RMS stretch of {}, {} of {}",
+                    made.name(),
+                    many.choice,
+                    many.rms_stretch,
+                    few.choice,
+                    few.rms_stretch
                 ));
             }
         }
@@ -152,32 +175,41 @@ impl Experiment for Hung {
                 row.ms_per_tick
             )
         };
-        let of = |choice: &str| {
-            let rows = rows.iter().filter(|row| row.choice == choice);
-            rows.map(said).collect::<Vec<_>>().join(", ")
-        };
-        let held = rows.iter().filter(|row| row.choice == TOLERANCE);
-        let exceeded: Vec<&str> = held
-            .filter(|row| row.max_stretch > 0.01)
-            .map(|row| row.pins.as_str())
-            .collect();
-        let exceeded = if exceeded.is_empty() {
-            "is held everywhere".into()
-        } else {
-            format!("is exceeded: {}", exceeded.join(", "))
-        };
-        vec![
-            format!("Largest stretch at 20 sub-steps: {}.", of("20")),
-            format!("A tolerance of 1 % {exceeded}. With it: {}.", of(TOLERANCE)),
-            format!(
-                "Energy is gained by at most {:.2} % of what the cloth's weight can do.",
-                100.0 * rows.iter().map(|row| row.energy_gain).fold(0.0, f64::max)
-            ),
-        ]
+        let mut findings = Vec::new();
+        for name in MADE.map(Made::name) {
+            let of = |choice: &'static str| {
+                let rows = rows.iter().filter(|row| row.surface == name);
+                rows.filter(move |row| row.choice == choice)
+            };
+            let list = |choice| of(choice).map(said).collect::<Vec<_>>().join(", ");
+            let exceeded: Vec<&str> = of(TOLERANCE)
+                .filter(|row| row.max_stretch > 0.01)
+                .map(|row| row.pins.as_str())
+                .collect();
+            let exceeded = if exceeded.is_empty() {
+                "is held everywhere".into()
+            } else {
+                format!("is exceeded: {}", exceeded.join(", "))
+            };
+            findings.push(format!(
+                "Largest stretch at 20 sub-steps, {name}: {}.",
+                list("20")
+            ));
+            findings.push(format!(
+                "A tolerance of 1 %, {name}, {exceeded}. With it: {}.",
+                list(TOLERANCE)
+            ));
+        }
+        findings.push(format!(
+            "Energy is gained by at most {:.2} % of what the cloth's weight can do.",
+            100.0 * rows.iter().map(|row| row.energy_gain).fold(0.0, f64::max)
+        ));
+        findings
     }
 
     fn table(rows: &[Row]) -> Table {
         let mut table = Table::new([
+            "surface",
             "pins",
             "choice",
             "ms a tick",
@@ -187,6 +219,7 @@ impl Experiment for Hung {
         ]);
         for row in rows {
             table.row([
+                row.surface.clone(),
                 row.pins.clone(),
                 row.choice.clone(),
                 format!("{:.3}", row.ms_per_tick),
@@ -211,40 +244,41 @@ fn percent(part: f64) -> String {
 }
 
 /// Those with a fixed number of sub-steps, the fewest first.
-fn fixed<'a>(rows: &'a [Row], pins: &'a str) -> impl Iterator<Item = &'a Row> {
-    let of = rows.iter().filter(move |row| row.pins == pins);
-    of.filter(|row| row.choice != TOLERANCE)
+fn fixed<'a>(rows: &'a [Row], made: Made, pins: &'a str) -> impl Iterator<Item = &'a Row> {
+    of(rows, made, pins).filter(|row| row.choice != TOLERANCE)
+}
+
+/// Those of one structure that are pinned in one way.
+fn of<'a>(rows: &'a [Row], made: Made, pins: &'a str) -> impl Iterator<Item = &'a Row> {
+    rows.iter()
+        .filter(move |row| row.surface == made.name() && row.pins == pins)
 }
 
 /// A panel a way of pinning.
 fn chart(rows: &[Row]) -> Chart {
-    let at_20 = || rows.iter().filter(|row| row.choice == "20");
-    let worst = at_20().max_by(|a, b| a.max_stretch.total_cmp(&b.max_stretch));
-    let best = at_20().min_by(|a, b| a.max_stretch.total_cmp(&b.max_stretch));
-    let title = match (best, worst) {
-        (Some(best), Some(worst)) => format!(
-            "20 sub-steps: a rigid cloth is stretched by up to {} % ({}) to {} % ({}), as it is hung",
-            percent(best.max_stretch),
-            best.pins,
-            percent(worst.max_stretch),
-            worst.pins
-        ),
-        _ => "How it is hung".into(),
+    let worst = |made: Made| {
+        let at_20 = rows
+            .iter()
+            .filter(move |row| row.surface == made.name() && row.choice == "20");
+        let worst = 100.0 * at_20.map(|row| row.max_stretch).fold(0.0, larger);
+        let digits = usize::from(worst < 10.0);
+        format!("{worst:.digits$}")
     };
+    let title = format!(
+        "20 sub-steps: a rigid grid stretches by up to {} %, an irregular mesh by up to {} %",
+        worst(Made::Grid),
+        worst(Made::Delaunay)
+    );
     let mut chart = Chart::new(
         "hung",
         title,
         format!(
-            "{SIDE}² particles, {WIDTH} m × {WIDTH} m, rigid, undamped, let go from lying flat: stretch of its threads in the last of three seconds. Numbers: sub-steps. Circles: a tolerance of {} %.",
+            "{SIDE}² particles, {WIDTH} m × {WIDTH} m, rigid, undamped, let go from lying flat: stretch of its threads in the last of three seconds. Numbers: sub-steps. Points apart: a tolerance of {} %.",
             number(1.0)
         ),
     )
     .sized([960, 800])
     .columns(3);
-    let kinds: [(&str, usize, fn(&Row) -> f64); 2] = [
-        ("largest", 0, |row| 100.0 * row.max_stretch),
-        ("RMS", 1, |row| 100.0 * row.rms_stretch),
-    ];
     // The same for all, so that panels can be compared.
     let times = || rows.iter().map(|row| row.ms_per_tick);
     let ends = [
@@ -265,21 +299,17 @@ fn chart(rows: &[Row]) -> Chart {
             Axis::log("ms a tick, log").between(ends[0], ends[1]),
             Axis::log("stretch (%), log").between(range[0], range[1]),
         );
-        for (name, style, value) in kinds {
-            let points = fixed(rows, pins).map(|row| [row.ms_per_tick, value(row)]);
+        for (name, made, style, value) in SERIES {
+            let point = |row: &Row| [row.ms_per_tick, 100.0 * value(row)];
             let look = Look::Style(style);
-            panel = panel.with(Series::new(name, look, Kind::Marked, points));
-            let held = rows.iter().filter(|row| row.pins == pins);
-            let held = held.filter(|row| row.choice == TOLERANCE);
-            let points = held.map(|row| [row.ms_per_tick, value(row)]);
-            panel = panel.with(Series::new(
-                "by tolerance",
-                Look::Style(6),
-                Kind::Points,
-                points,
-            ));
+            // By time: a line that turns back is drawn with a spike.
+            let mut line: Vec<[f64; 2]> = fixed(rows, made, pins).map(point).collect();
+            line.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            panel = panel.with(Series::new(name, look, Kind::Marked, line));
+            let held = of(rows, made, pins).filter(|row| row.choice == TOLERANCE);
+            panel = panel.with(Series::new("", look, Kind::Points, held.map(point)));
         }
-        for row in fixed(rows, pins) {
+        for row in fixed(rows, Made::Delaunay, pins) {
             let at = [row.ms_per_tick, 100.0 * row.max_stretch];
             panel = panel.note(at, row.choice.clone());
         }
@@ -298,9 +328,9 @@ mod tests {
     fn each_way_of_pinning_is_played() {
         let rows = quick::<Hung>(
             View::Nothing,
-            "pins,particles,choice,ms_per_tick,max_stretch,rms_stretch,energy_gain",
+            "surface,pins,particles,choice,ms_per_tick,max_stretch,rms_stretch,energy_gain",
         );
-        assert_eq!(rows.len(), PINS.len() * choices(true).len());
+        assert_eq!(rows.len(), MADE.len() * PINS.len() * choices(true).len());
         assert!(rows.iter().all(|row| row.particles == 4096));
     }
 

@@ -9,6 +9,8 @@ use bevy_drape::{
 };
 use examples_shared::sheet::{Sheet, threads};
 
+use crate::surfaces::Made;
+
 /// Particles along a side, and its length (m).
 pub const SIDE: u32 = 64;
 pub const WIDTH: f32 = 2.0;
@@ -41,6 +43,7 @@ pub const PINS: [(&str, Pinned); 6] = [
 /// What came of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Outcome {
+    pub particles: usize,
     pub ms_per_tick: f64,
     /// Over structural springs in the last second, as parts of their length.
     pub max_stretch: f64,
@@ -49,19 +52,30 @@ pub struct Outcome {
 }
 
 /// Plays a scene, with one particle a µm aside in each `start`.
-pub fn play(pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
+pub fn play(made: Made, pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
     let spacing = WIDTH / (SIDE - 1) as f32;
     let step = TickStep {
         seconds: 1.0 / 60.0,
         ..TickStep::default()
     };
-    let place = |row: u32, column: u32| {
-        let is_nudged = (row, column) == (7 * start % SIDE, (11 * start + 5) % SIDE);
+    let (surface, _) = made.surface([SIDE; 2], spacing);
+    // A mesh's particles are in another order.
+    let mut cells = vec![(0, 0); surface.len()];
+    for vertex in 0..SIDE * SIDE {
+        let particle = surface.particle_of_vertex(vertex as usize);
+        cells[particle.expect("a particle for each vertex")] = (vertex / SIDE, vertex % SIDE);
+    }
+    let rest = surface.rest_positions().to_vec();
+    let place = |particle: usize| {
+        let is_nudged = cells[particle] == (7 * start % SIDE, (11 * start + 5) % SIDE);
         let height = if is_nudged { NUDGE } else { 0.0 };
-        Vec3::new(column as f32 * spacing, height, row as f32 * spacing)
+        Vec3::new(rest[particle].x, height, -rest[particle].y)
     };
-    let size = (SIDE, SIDE);
-    let mut sheet = Sheet::new(size, spacing, threads(0.0, 0.0), step, place, pinned)
+    let is_pinned = |particle: usize| {
+        let (row, column) = cells[particle];
+        pinned(row, column)
+    };
+    let mut sheet = Sheet::of_surface(surface, threads(0.0, 0.0), step, place, is_pinned)
         .tethered(ClothSettings::default().tethers);
     let scale = sheet.fall();
     let [_, begins] = sheet.energy();
@@ -97,6 +111,7 @@ pub fn play(pinned: Pinned, substepping: Substepping, start: u32) -> Outcome {
         }
     }
     Outcome {
+        particles: sheet.particles.len(),
         ms_per_tick: 1.0e3 * seconds / f64::from(TICKS),
         max_stretch: largest,
         rms_stretch: f64::sqrt(squares / count),

@@ -81,7 +81,7 @@ fn errors(rows: &[Row]) -> Chart {
         title,
         format!("{conditions} The same marker in grey: another setting is faster and at least as exact. No error is drawn below the reference's own."),
     )
-    .sized([960, 900])
+    .sized([960, 1300])
     .columns(2);
     let is_shown_best = |method: &str| {
         groups
@@ -153,7 +153,7 @@ fn stretches(rows: &[Row]) -> Chart {
         )
     });
     let mut chart = Chart::new("pareto-stretch", title, conditions(&groups))
-        .sized([960, 900])
+        .sized([960, 1300])
         .columns(2);
     for group in &groups {
         let mut panel = Panel::new(

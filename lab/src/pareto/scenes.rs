@@ -1,8 +1,12 @@
 //! The scenes in which speed is weighed against accuracy.
 
 use bevy::math::Vec3;
+use bevy_drape::cloth::{ClothParticles, Springs};
 
-use crate::methods::{MassSpring, Real, Scene};
+use crate::{
+    methods::{MassSpring, Real, Scene},
+    surfaces::Made,
+};
 
 /// Each is simulated for a second.
 pub const TICKS: u32 = 60;
@@ -36,7 +40,7 @@ pub struct Case {
 
 impl Case {
     /// All scenes with cloths of `side`² particles.
-    pub fn all(side: u32) -> [Self; 5] {
+    pub fn all(side: u32) -> [Self; 6] {
         let case = |name, angle, compliance, damping, ball| {
             let mut scene = Scene::swinging(side, WIDTH, angle, compliance).expect("a valid scene");
             scene.material.damping = damping;
@@ -48,7 +52,30 @@ impl Case {
             case(BALL, 0.0, SOFT, DAMPING_BY_BALL, Some(Ball)),
             case(STIFF_HANGING, 0.0, STIFF, DAMPING, None),
             case(STIFF_SWINGING, 0.5, STIFF, DAMPING, None),
+            case("mesh, hanging", 0.0, SOFT, DAMPING, None).of_mesh(side),
         ]
+    }
+
+    /// The same of an irregular mesh.
+    fn of_mesh(mut self, side: u32) -> Self {
+        let (surface, _) = Made::Delaunay.surface([side; 2], WIDTH / (side - 1) as f32);
+        let scene = &mut self.scene;
+        scene.springs = Springs::of_surface(&surface, &scene.material);
+        scene.particles =
+            ClothParticles::at_rest(&surface, &scene.material).expect("a valid material");
+        for (particle, rest) in surface.rest_positions().iter().enumerate() {
+            // Hung by its top row, it begins at rest.
+            if rest.y == 0.0 {
+                let is_there = scene.particles.set_inverse_mass(particle, 0.0);
+                is_there.expect("it exists");
+            }
+        }
+        scene.surface = surface;
+        self
+    }
+
+    pub fn is_mesh(&self) -> bool {
+        self.scene.surface.as_grid().is_none()
     }
 
     pub fn particles(&self) -> usize {

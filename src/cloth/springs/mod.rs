@@ -73,17 +73,17 @@ impl SpringList {
             } else {
                 63 + index
             };
-            colour_of.push((colour, index));
+            colour_of.push(colour);
         }
-        colour_of.sort_unstable();
+        let mut order: Vec<usize> = (0..springs.len()).collect();
+        order.sort_by_key(|index| colour_of[*index]);
         let mut places = vec![0; springs.len()];
-        for (place, (_, index)) in (self.springs.len()..).zip(&colour_of) {
-            places[*index] = place as u32;
-        }
-        for group in colour_of.chunk_by(|(a, _), (b, _)| a == b) {
+        for group in order.chunk_by(|a, b| colour_of[*a] == colour_of[*b]) {
             let start = self.springs.len();
-            self.springs
-                .extend(group.iter().map(|&(_, index)| springs[index]));
+            for &index in group {
+                places[index] = self.springs.len() as u32;
+                self.springs.push(springs[index]);
+            }
             self.colours.push(start..self.springs.len());
         }
         places

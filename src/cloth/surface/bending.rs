@@ -12,11 +12,14 @@ impl Surface {
     /// before, but beside the tears.
     pub(crate) fn bending_faces(&self) -> &Triangulation {
         self.derived.bending.get_or_init(|| match &self.torn {
-            Some(torn) => Triangulation::torn(&torn.corners, torn.whole.bending_faces(), |at| {
-                torn.origin[at as usize]
-            }),
+            Some(torn) => {
+                let (whole, sides) = (torn.whole.bending_faces(), torn.sides());
+                Triangulation::torn(&torn.corners, &sides, whole, |at| torn.origin[at as usize])
+            }
             // The diagonals of a grid are parallel.
-            None if self.as_grid().is_some() => Triangulation::of(self.triangles()),
+            None if self.as_grid().is_some() => {
+                Triangulation::of(self.triangles(), &self.incidence().sides)
+            }
             None => {
                 let places = self.rest.iter().map(|place| place.as_dvec3());
                 let places: Vec<DVec3> = places.collect();

@@ -2,49 +2,32 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
+use crate::cloth::by_particle::ByParticle;
+
 /// Neighbours of each particle, ascending, and their distances at rest (m).
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(crate) struct Graph {
-    /// First neighbour of each particle; one more entry than particles.
-    first: Vec<u32>,
-    neighbours: Vec<(u32, f32)>,
-}
+pub(crate) struct Graph(ByParticle<(u32, f32)>);
 
 impl Graph {
     /// The graph of edges between two particles, with their lengths (m); each edge once.
     pub fn new(particles: usize, edges: impl Iterator<Item = ([u32; 2], f32)> + Clone) -> Self {
-        let mut first = vec![0; particles + 1];
-        for end in edges.clone().flat_map(|(ends, _)| ends) {
-            first[end as usize + 1] += 1;
+        let both_ways = |([a, b], length): ([u32; 2], f32)| [(a, (b, length)), (b, (a, length))];
+        let mut neighbours = ByParticle::new(particles, || edges.clone().flat_map(both_ways));
+        for particle in 0..particles as u32 {
+            neighbours.of_mut(particle).sort_by_key(|near| near.0);
         }
-        for particle in 0..particles {
-            first[particle + 1] += first[particle];
-        }
-        let mut next = first.clone();
-        let mut neighbours = vec![(0, 0.0); first[particles] as usize];
-        for ([a, b], length) in edges {
-            for (from, to) in [(a, b), (b, a)] {
-                let place = &mut next[from as usize];
-                neighbours[*place as usize] = (to, length);
-                *place += 1;
-            }
-        }
-        for ends in first.windows(2) {
-            neighbours[ends[0] as usize..ends[1] as usize].sort_by_key(|near| near.0);
-        }
-        Self { first, neighbours }
+        Self(neighbours)
     }
 
     /// Number of particles.
     pub fn len(&self) -> usize {
-        self.first.len().saturating_sub(1)
+        self.0.len()
     }
 
     /// The neighbours of a particle, and their distances (m).
     #[inline]
     pub fn of(&self, particle: u32) -> &[(u32, f32)] {
-        let particle = particle as usize;
-        &self.neighbours[self.first[particle] as usize..self.first[particle + 1] as usize]
+        self.0.of(particle)
     }
 
     /// For each particle, the distance along edges to the nearest source (m), infinite without a path, and the index of

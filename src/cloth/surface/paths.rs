@@ -14,8 +14,8 @@ pub(crate) struct ShortestPaths<'a> {
     /// For each particle, the search whose target it was last.
     wanted: Vec<u32>,
     search: u32,
-    /// Width of a bucket (m): no edge reaches beyond the last of them.
-    width: f64,
+    /// Buckets a metre: no edge reaches beyond the last of them. 0 if no edge has a length.
+    density: f64,
     buckets: Vec<Vec<u32>>,
     /// The particles that were passed in the current bucket.
     passed: Vec<u32>,
@@ -43,15 +43,19 @@ impl<'a> ShortestPaths<'a> {
             reached: vec![Reached::default(); graph.len()],
             wanted: vec![0; graph.len()],
             search: 0,
-            width: longest / (BUCKETS - 2) as f64,
+            density: if longest > 0.0 {
+                (BUCKETS - 2) as f64 / longest
+            } else {
+                0.0
+            },
             buckets: vec![Vec::new(); BUCKETS],
             passed: Vec::new(),
         }
     }
 
-    /// Finds the paths from `start` to all of `patch`. Returns the particle of it that is reached last and its distance
-    /// (m); `None` if one is unreachable.
-    fn search(&mut self, start: u32, patch: &[u32]) -> Option<(u32, f64)> {
+    /// Finds the paths from `start` to all of `patch`. Returns the particle of it that is reached last and its distance (m), which is
+    /// infinite if one is unreachable.
+    fn search(&mut self, start: u32, patch: &[u32]) -> (u32, f64) {
         self.search += 1;
         let search = self.search;
         for &particle in patch {
@@ -60,7 +64,7 @@ impl<'a> ShortestPaths<'a> {
         self.buckets.iter_mut().for_each(Vec::clear);
         self.reach(start, 0.0);
         let (mut left, mut last) = (patch.len(), (0.0, start));
-        // As many empty buckets in a row as there are: nothing waits.
+        // After as many empty buckets in a row as there are, nothing waits.
         let (mut bucket, mut empty) = (0, 0);
         while left > 0 && empty < BUCKETS {
             self.pass_bucket(bucket);
@@ -78,7 +82,7 @@ impl<'a> ShortestPaths<'a> {
             }
             bucket += 1;
         }
-        (left == 0).then_some((last.1, last.0))
+        (last.1, if left == 0 { last.0 } else { f64::INFINITY })
     }
 
     /// Passes on all that waits in a bucket, until nothing in it changes.
@@ -109,42 +113,25 @@ impl<'a> ShortestPaths<'a> {
             distance,
             passed_on: f64::NAN,
         };
-        let bucket = if self.width > 0.0 {
-            (distance / self.width) as usize
-        } else {
-            0
-        };
+        let bucket = (distance * self.density) as usize;
         self.buckets[bucket % BUCKETS].push(particle);
     }
 
     /// The distance from `start` to the farthest particle of `patch` (m), rounded up; infinite if one is unreachable.
     pub fn farthest(&mut self, start: u32, patch: &[u32]) -> f32 {
         match self.search(start, patch) {
-            Some((_, distance)) if distance > 0.0 => (distance as f32).next_up(),
-            Some(_) => 0.0,
-            None => f32::INFINITY,
+            (_, distance) if distance > 0.0 => (distance as f32).next_up(),
+            _ => 0.0,
         }
     }
 
-    /// Writes the distance of each particle of `patch` from `start` (m), in order, infinite if unreachable. Returns the
-    /// farthest particle; unreachable ones count as farthest.
+    /// Writes the distance of each particle of `patch` from `start` (m), in order. Returns the farthest particle. `patch` is of one
+    /// piece.
     pub fn distances(&mut self, start: u32, patch: &[u32], distances: &mut Vec<f64>) -> u32 {
-        let last = self.search(start, patch);
-        let (reached, search) = (&self.reached, self.search);
-        let distance = |particle: u32| match reached[particle as usize] {
-            reached if reached.search == search => reached.distance,
-            _ => f64::INFINITY,
-        };
+        let (last, _) = self.search(start, patch);
+        let distance = |particle: &u32| self.reached[*particle as usize].distance;
         distances.clear();
-        distances.extend(patch.iter().map(|&particle| distance(particle)));
-        let beyond = || {
-            patch
-                .iter()
-                .copied()
-                .find(|&particle| distance(particle).is_infinite())
-        };
-        last.map(|(particle, _)| particle)
-            .or_else(beyond)
-            .unwrap_or(start)
+        distances.extend(patch.iter().map(distance));
+        last
     }
 }

@@ -98,8 +98,8 @@ impl Detection {
                     touch.travelled += stood.gone;
                 }
             }
-            if substep.next().is_none()
-                && self.supports.is_held(id)
+            // In each sub-step: it may roll off in the next one.
+            if self.supports.is_held(id)
                 && let Some(touch) = self.touches.iter().find(|touch| touch.id == id)
             {
                 note_pressed(touch, &mut self.candidates, &self.supports);

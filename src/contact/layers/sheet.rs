@@ -5,7 +5,10 @@ use std::{ops::Range, sync::Arc};
 use bevy::{math::Vec3A, platform::collections::HashSet};
 
 use super::{tangents::Tangents, windows::Windows};
-use crate::{cloth::Surface, hierarchy::QuadTree};
+use crate::{
+    cloth::{ByParticle, Surface},
+    hierarchy::QuadTree,
+};
 
 /// Largest number of particles that a patch of a mesh owns.
 const OWNED: u32 = 8;
@@ -22,9 +25,8 @@ pub(crate) struct Sheet {
     faces: Vec<[u16; 3]>,
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
-    /// The patches with features of each particle, and where they begin among these; and one more.
-    patches_with: Vec<u32>,
-    first_with: Vec<u32>,
+    /// The patches with features of each particle.
+    patches_with: ByParticle<u32>,
     /// The corners of eight features each, by their places among the particles of their patch: of owned vertices, faces, and
     /// edges. The last feature fills the rest of its eight.
     groups: Vec<[u16; 8]>,
@@ -103,22 +105,13 @@ impl Sheet {
 
     /// Finds the patches with features of each particle.
     fn find_patches(&mut self) {
-        self.first_with = vec![0; self.surface.len() + 1];
-        for &particle in &self.particles {
-            self.first_with[particle as usize + 1] += 1;
-        }
-        for particle in 0..self.surface.len() {
-            self.first_with[particle + 1] += self.first_with[particle];
-        }
-        let mut next = self.first_with.clone();
-        self.patches_with = vec![0; self.particles.len()];
-        for (index, patch) in (0..).zip(&self.patches) {
-            for place in patch.particles.clone() {
-                let next = &mut next[self.particles[place as usize] as usize];
-                self.patches_with[*next as usize] = index;
-                *next += 1;
-            }
-        }
+        self.patches_with = ByParticle::new(self.surface.len(), || {
+            let patches = 0..self.patches.len() as u32;
+            patches.flat_map(|index| {
+                let particles = self.particles_of(index).iter();
+                particles.map(move |particle| (*particle, index))
+            })
+        });
     }
 
     /// Adds a node without children: of the next patch. Returns its index, too.
@@ -277,8 +270,7 @@ impl Sheet {
 
     /// The patches with features of a particle.
     pub(super) fn patches_of(&self, particle: usize) -> &[u32] {
-        let [start, end] = [0, 1].map(|at| self.first_with[particle + at] as usize);
-        &self.patches_with[start..end]
+        self.patches_with.of(particle as u32)
     }
 
     /// The place of a patch's first particle among those of all patches.

@@ -20,8 +20,8 @@ use crate::{
 };
 
 /// From this ratio of its radius along the surface to that through space on, a patch is folded: its halves are split
-/// along the surface. On a flat patch, a path along edges is up to √2 times as long as a straight line.
-const FOLDED: f32 = 1.5;
+/// along the surface. On a flat patch, a path along edges is up to √2 times as long as a straight line from the same particle.
+const FOLDED: f64 = 1.5;
 
 /// A tree over arbitrarily connected particles.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -55,6 +55,11 @@ impl NetworkTree {
             rest,
             order: (0..rest.len() as u32).collect(),
             paths: ShortestPaths::new(graph),
+            pieces: if graph.pieces() > 1 {
+                graph.pieces_of()
+            } else {
+                Vec::new()
+            },
             distances: Vec::new(),
             keys: vec![0.0; rest.len()],
         };
@@ -66,10 +71,10 @@ impl NetworkTree {
             let is_last = patches.iter().all(|patch| patch.len() == 1);
             let mut parts = Vec::new();
             for patch in patches {
-                let (middle, rest_radius) = splitter.measure(patch.clone());
+                let (middle, rest_radius, is_folded) = splitter.measure(patch.clone());
                 let child = below + parts.len() as u32;
                 if !is_last {
-                    splitter.split(patch, rest_radius, &mut parts);
+                    splitter.split(patch, is_folded, &mut parts);
                 }
                 let end = if is_last {
                     child
@@ -234,16 +239,21 @@ struct Splitter<'a> {
     /// The particles, grouped by patch.
     order: Vec<u32>,
     paths: ShortestPaths<'a>,
+    /// The connected piece of each particle; empty if there is one.
+    pieces: Vec<u32>,
     distances: Vec<f64>,
     /// Sort keys of a patch's particles.
     keys: Vec<f32>,
 }
 
 impl Splitter<'_> {
-    /// The middle particle of a patch, nearest to its centroid, and the largest distance along the surface from it to
-    /// another one of the patch (m).
-    fn measure(&mut self, patch: Range<usize>) -> (u32, f32) {
+    /// The middle particle of a patch, nearest to its centroid, the largest distance along the surface from it to
+    /// another one of the patch (m), and whether the patch is folded. The distance is infinite if the patch is of several pieces.
+    fn measure(&mut self, patch: Range<usize>) -> (u32, f32, bool) {
         let members = &self.order[patch];
+        if let [only] = members {
+            return (*only, 0.0, false);
+        }
         let at = |particle: u32| self.rest[particle as usize].as_dvec3();
         let centroid =
             members.iter().map(|&particle| at(particle)).sum::<DVec3>() / members.len() as f64;
@@ -254,20 +264,28 @@ impl Splitter<'_> {
             .copied()
             .min_by(nearest)
             .expect("no patch is empty");
-        (middle, self.paths.farthest(middle, members))
+        if self.is_in_pieces(members) {
+            return (middle, f32::INFINITY, false);
+        }
+        let squares = members
+            .iter()
+            .map(|&of| at(of).distance_squared(at(middle)));
+        let straight = squares.fold(0.0, f64::max).sqrt();
+        let rest_radius = self.paths.farthest(middle, members);
+        let is_folded = f64::from(rest_radius) > FOLDED * straight;
+        (middle, rest_radius, is_folded)
     }
 
     /// Halves a patch, and each half.
-    fn split(&mut self, patch: Range<usize>, rest_radius: f32, parts: &mut Vec<Range<usize>>) {
-        let is_folded = self.is_folded(patch.clone(), rest_radius);
+    fn split(&mut self, patch: Range<usize>, is_folded: bool, parts: &mut Vec<Range<usize>>) {
         for half in self.bisect(patch, is_folded) {
             parts.extend(self.bisect(half, is_folded));
         }
     }
 
-    fn is_folded(&self, patch: Range<usize>, rest_radius: f32) -> bool {
-        let [low, high] = self.corners(patch);
-        rest_radius > FOLDED * low.distance(high) / 2.0
+    fn is_in_pieces(&self, members: &[u32]) -> bool {
+        let piece = |particle: u32| self.pieces.get(particle as usize);
+        !self.pieces.is_empty() && members.iter().any(|&of| piece(of) != piece(members[0]))
     }
 
     /// The bounding box of a patch.
@@ -280,9 +298,9 @@ impl Splitter<'_> {
         })
     }
 
-    /// Halves a patch. A patch that is not folded is halved along its longest extent. A folded one is halved by the
-    /// nearer of two ends along the surface, so that few halves have two sides of a fold. As halves are of equal size,
-    /// one may keep a few particles of the other side.
+    /// Halves a patch. A patch in pieces is halved between them, as far as halves of equal size allow. A patch that is not folded
+    /// is halved along its longest extent. A folded one is halved by the nearer of two ends along the surface, so that few halves
+    /// have two sides of a fold. As halves are of equal size, one may keep a few particles of the other side.
     fn bisect(
         &mut self,
         patch: Range<usize>,
@@ -299,12 +317,12 @@ impl Splitter<'_> {
                     self.keys[particle as usize] = self.rest[particle as usize][axis];
                 }
             }
-            let keys = &self.keys;
+            let (keys, pieces) = (&self.keys, &self.pieces);
+            let piece = |of: u32| pieces.get(of as usize);
             // Ties by index, so that the tree is the same on all machines.
             self.order[patch.clone()].select_nth_unstable_by(half, |a, b| {
-                keys[*a as usize]
-                    .total_cmp(&keys[*b as usize])
-                    .then(a.cmp(b))
+                let by_key = keys[*a as usize].total_cmp(&keys[*b as usize]);
+                piece(*a).cmp(&piece(*b)).then(by_key).then(a.cmp(b))
             });
         }
         let parts = [
@@ -314,7 +332,7 @@ impl Splitter<'_> {
         parts.into_iter().filter(|part| !part.is_empty())
     }
 
-    /// Computes keys for the nearer of two ends of a patch; they separate disconnected pieces, too.
+    /// Computes keys for the nearer of two ends of a patch.
     fn sort_by_ends(&mut self, patch: Range<usize>) {
         let members = &self.order[patch];
         let one = self
@@ -326,10 +344,7 @@ impl Splitter<'_> {
         }
         self.paths.distances(other, members, &mut self.distances);
         for (&particle, &distance) in members.iter().zip(&self.distances) {
-            let key = &mut self.keys[particle as usize];
-            // Particles that reach neither end belong to neither.
-            let nearer = *key - distance as f32;
-            *key = if nearer.is_nan() { 0.0 } else { nearer };
+            self.keys[particle as usize] -= distance as f32;
         }
     }
 }

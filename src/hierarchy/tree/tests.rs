@@ -62,58 +62,98 @@ fn rest_radius_reaches_the_farthest_corner() {
     );
 }
 
-/// The same springs as a list: radii are those of the shortest ways, which a search over all pairs finds, too.
+/// The particles and springs of a grid, as a list.
+fn network(columns: u32, rows: u32, diagonals: bool) -> (Vec<Vec3>, Vec<Spring>) {
+    let grid = grid(columns, rows);
+    let material = ClothMaterial {
+        shear_compliance: if diagonals { 0.0 } else { f32::INFINITY },
+        ..ClothMaterial::COTTON
+    };
+    let places = grid
+        .cells()
+        .map(|(row, column)| grid.rest_position(row, column));
+    (
+        places.collect(),
+        Springs::of_grid(&grid, &material).to_vec(),
+    )
+}
+
+/// The tree of a network, of which each radius is compared with a search over all pairs (Floyd and Warshall).
+fn checked(rest: &[Vec3], springs: &[Spring]) -> QuadTree {
+    let tree = QuadTree::of_network(rest, springs).expect("valid springs");
+    assert_eq!(tree.validate(rest.len()), Ok(()));
+    let count = rest.len();
+    let mut distance = vec![vec![f64::INFINITY; count]; count];
+    for (index, distances) in distance.iter_mut().enumerate() {
+        distances[index] = 0.0;
+    }
+    for spring in springs
+        .iter()
+        .filter(|spring| spring.kind != SpringKind::Bend)
+    {
+        let [a, b] = spring.ends.map(|end| end as usize);
+        distance[a][b] = f64::from(spring.rest_length);
+        distance[b][a] = distance[a][b];
+    }
+    for via in 0..count {
+        for from in 0..count {
+            for to in 0..count {
+                distance[from][to] =
+                    distance[from][to].min(distance[from][via] + distance[via][to]);
+            }
+        }
+    }
+    for index in 0..tree.len() as u32 {
+        let node = tree.node(index);
+        let distances = tree
+            .particles_of(index)
+            .into_iter()
+            .map(|particle| distance[node.middle as usize][particle as usize]);
+        let farthest = distances.fold(0.0, f64::max);
+        let radius = f64::from(node.rest_radius);
+        assert!(
+            radius >= farthest && radius <= farthest * (1.0 + 1e-6),
+            "{radius} {farthest}"
+        );
+    }
+    tree
+}
+
+/// The same springs as a list: radii are those of the shortest ways.
 #[test]
 fn a_networks_radii_are_shortest_ways() {
     for (columns, rows, diagonals) in [(2, 2, true), (5, 4, true), (7, 6, false), (9, 3, true)] {
-        let grid = grid(columns, rows);
-        let shear_compliance = if diagonals { 0.0 } else { f32::INFINITY };
-        let material = ClothMaterial {
-            shear_compliance,
-            ..ClothMaterial::COTTON
-        };
-        let springs = Springs::of_grid(&grid, &material).to_vec();
-        let rest: Vec<Vec3> = grid
-            .cells()
-            .map(|(row, column)| grid.rest_position(row, column))
-            .collect();
-        let tree = QuadTree::of_network(&rest, &springs).expect("valid springs");
-        assert_eq!(tree.validate(rest.len()), Ok(()));
-        // Floyd and Warshall.
-        let count = rest.len();
-        let mut distance = vec![vec![f64::INFINITY; count]; count];
-        for (index, distances) in distance.iter_mut().enumerate() {
-            distances[index] = 0.0;
-        }
-        for spring in springs
-            .iter()
-            .filter(|spring| spring.kind != SpringKind::Bend)
-        {
-            let [a, b] = spring.ends.map(|end| end as usize);
-            distance[a][b] = f64::from(spring.rest_length);
-            distance[b][a] = distance[a][b];
-        }
-        for via in 0..count {
-            for from in 0..count {
-                for to in 0..count {
-                    distance[from][to] =
-                        distance[from][to].min(distance[from][via] + distance[via][to]);
-                }
-            }
-        }
-        for index in 0..tree.len() as u32 {
-            let node = tree.node(index);
-            let distances = tree
-                .particles_of(index)
-                .into_iter()
-                .map(|particle| distance[node.middle as usize][particle as usize]);
-            let farthest = distances.fold(0.0, f64::max);
-            let radius = f64::from(node.rest_radius);
-            assert!(
-                radius >= farthest && radius <= farthest * (1.0 + 1e-6),
-                "{radius} {farthest}"
-            );
-        }
+        let (rest, springs) = network(columns, rows, diagonals);
+        checked(&rest, &springs);
+    }
+}
+
+/// With springs missing anywhere: what hangs together is bounded, what does not reaches without end.
+#[test]
+fn a_torn_networks_radii_are_shortest_ways() {
+    let mut state = 5_u32;
+    for kept in [9, 6, 4, 2] {
+        let (rest, mut springs) = network(9, 8, kept % 3 == 0);
+        springs.retain(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % 10 < kept
+        });
+        checked(&rest, &springs);
+    }
+}
+
+/// A cloth that is cut in two: a node a level, at most, has to do with both pieces.
+#[test]
+fn a_cloth_in_two_pieces_has_few_nodes_of_both() {
+    let (rest, mut springs) = network(13, 12, true);
+    springs.retain(|spring| {
+        let [a, b] = spring.ends.map(|end| end % 13 < 5);
+        a == b
+    });
+    let tree = checked(&rest, &springs);
+    let is_of_both = |node: &u32| tree.node(*node).rest_radius.is_infinite();
+    for level in tree.levels() {
+        assert!(level.clone().filter(is_of_both).count() <= 1);
     }
 }
 

@@ -139,7 +139,7 @@ fn build_new(
         true => parts.get_built(&wanted.request(&recipe), || sources.mesh(&recipe))?,
         false => None,
     };
-    let shared = parts.get(&recipe, material, of, || {
+    let shared = parts.get(&recipe, material, None, of, || {
         recipe.surface(&sources.mesh(&recipe)?)
     })?;
     let surface = &shared.surface;

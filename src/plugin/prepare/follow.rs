@@ -32,7 +32,7 @@ pub(super) fn follow_grain(
         ..known.clone()
     };
     let of = |surface: &Surface| Ok(wanted.factors(surface)?.stiffness);
-    let shared = parts.get(&recipe, wanted.material, of, || {
+    let shared = parts.get(&recipe, wanted.material, None, of, || {
         recipe.surface(&sources.mesh(&recipe)?)
     })?;
     // A change that fails leaves the springs as they are.

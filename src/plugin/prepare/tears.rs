@@ -40,7 +40,7 @@ pub(super) fn follow_tears(
         factors = wanted.factors(surface)?;
         Ok(factors.stiffness.clone())
     };
-    let shared = parts.get(&recipe, wanted.material, of, || {
+    let shared = parts.get(&recipe, wanted.material, Some(&built.shared), of, || {
         recipe.opened(before.whole())
     })?;
     let surface = &shared.surface;

@@ -42,7 +42,7 @@ impl BuildRequest {
             None => Arc::new(self.recipe.surface(mesh)?),
         };
         let factors = self.factors(&surface)?;
-        let shared = Shared::new(self.recipe, &self.material, surface, factors, alike);
+        let shared = Shared::new(self.recipe, &self.material, surface, factors, alike, None);
         // The first tick needs them.
         shared.surface.fans();
         shared.sheet();

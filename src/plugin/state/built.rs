@@ -310,7 +310,7 @@ mod tests {
         let no_factors = |_: &Surface| Ok(Arc::default());
         let mut parts = SharedParts::default();
         parts
-            .get(&recipe, material, no_factors, surface)
+            .get(&recipe, material, None, no_factors, surface)
             .expect("a surface")
     }
 

@@ -32,13 +32,14 @@ pub(crate) struct Shared {
 
 impl Shared {
     /// Builds springs, solver and tree of a surface, or takes those of `alike` that are the same: they share its recipe and
-    /// surface.
+    /// surface. `before` is of the same cloth with other tears.
     pub fn new(
         recipe: Recipe,
         material: &ClothMaterial,
         surface: Arc<Surface>,
         factors: Arc<StiffnessFactors>,
         alike: &[Arc<Self>],
+        before: Option<&Self>,
     ) -> Self {
         let stiffnesses = Stiffnesses::of(material, &factors);
         // A tree does not know of stiffness.
@@ -49,21 +50,27 @@ impl Shared {
         };
         let springs_of = |known: &Self| known.stiffnesses.has_springs_of(&stiffnesses);
         let bends_as = |known: &Self| known.stiffnesses.bends_as(&stiffnesses);
-        let (tree, (springs, solver)) = join(tree, || {
-            let (springs, mut solver) = match alike.iter().find(|of| springs_of(of)) {
-                Some(known) => (known.springs.clone(), known.solver.clone()),
-                None => {
-                    let springs = Springs::with_factors(&surface, material, &factors);
-                    let solver = Solver::of_surface(&surface, &springs);
-                    (springs, solver)
-                }
-            };
-            solver.set_bending(match alike.iter().find(|of| bends_as(of)) {
-                Some(known) => known.solver.bending().cloned(),
-                None => Bending::with_factors(&surface, material, factors.clone()),
-            });
-            (springs, solver)
-        });
+        let springs = || match alike.iter().find(|of| springs_of(of)) {
+            Some(known) => (known.springs.clone(), known.solver.clone()),
+            None => {
+                let springs = Springs::with_factors(&surface, material, &factors);
+                let solver = Solver::of_surface(&surface, &springs);
+                (springs, solver)
+            }
+        };
+        let bending = || match alike.iter().find(|of| bends_as(of)) {
+            Some(known) => known.solver.bending().cloned(),
+            None => {
+                let is_as_rigid = |of: &&Self| {
+                    of.stiffnesses.everywhere.bending == stiffnesses.everywhere.bending
+                };
+                let known = before.filter(is_as_rigid);
+                let known = known.and_then(|of| Some((of.solver.bending()?, &*of.surface)));
+                Bending::with_factors(&surface, material, factors.clone(), known)
+            }
+        };
+        let (tree, ((springs, mut solver), bending)) = join(tree, || (springs(), bending()));
+        solver.set_bending(bending);
         // Neither knows of stiffness, but a sheet's patches are those of the tree.
         let of_same_tree = alike.iter().filter(|of| of.has_tree(has_diagonals));
         let sheet = of_same_tree.filter_map(|of| of.sheet.get()).next();
@@ -198,7 +205,7 @@ mod tests {
     fn get(parts: &mut SharedParts, recipe: &Recipe, (material, factors): &Wanted) -> Arc<Shared> {
         let of = |_: &Surface| Ok(factors.clone());
         let surface = || recipe.surface(&Default::default());
-        let found = parts.get(recipe, material, of, surface);
+        let found = parts.get(recipe, material, None, of, surface);
         found.expect("a surface")
     }
 
@@ -284,6 +291,49 @@ mod tests {
                     let _known = get(&mut parts, &recipe, before);
                     let taken = moved(&get(&mut parts, &recipe, wanted), &wanted.0);
                     assert_eq!(taken, new, "{before:?} {wanted:?}");
+                }
+            }
+        }
+    }
+
+    /// The same for a cloth that was torn in another way, and of another material, map or structure before.
+    #[test]
+    fn parts_taken_from_other_tears_are_as_new() {
+        let mesh = irregular(0.5, 0.5, 0.1, 0.3);
+        let [grid, mesh] = [
+            Cloth::new(6, 6, 0.1).shape,
+            Cloth::triangles(mesh.positions, mesh.triangles).shape,
+        ];
+        let torn = |shape: &ClothShape, count: usize| {
+            let mut recipe = recipe(shape, false);
+            let whole = recipe.surface(&Default::default()).expect("a surface");
+            for face in whole.triangles().iter().step_by(9).take(count) {
+                recipe.tears.tear_out(&whole, *face);
+            }
+            recipe
+        };
+        for (shape, counts) in [&grid, &mesh]
+            .into_iter()
+            .flat_map(|shape| [[0, 2], [2, 4], [4, 1], [3, 0]].map(|counts| (shape, counts)))
+        {
+            let [first, then] = counts.map(|count| torn(shape, count));
+            let [of_first, of_then] = [&first, &then].map(|recipe| {
+                let surface = recipe.surface(&Default::default()).expect("a surface");
+                changes(surface.len())
+            });
+            for wanted in &of_then {
+                let new = get(&mut SharedParts::default(), &then, wanted);
+                for before in &of_first {
+                    let before = get(&mut SharedParts::default(), &first, before);
+                    let (of, make) = (
+                        |_: &Surface| Ok(wanted.1.clone()),
+                        || then.surface(&Default::default()),
+                    );
+                    let taken =
+                        SharedParts::default().get(&then, &wanted.0, Some(&before), of, make);
+                    let taken = taken.expect("a surface");
+                    let [taken, new] = [&taken, &new].map(|of| moved(of, &wanted.0));
+                    assert_eq!(taken, new, "{counts:?} {wanted:?}");
                 }
             }
         }

@@ -20,7 +20,7 @@ pub(crate) struct SharedParts {
 
 impl SharedParts {
     /// The shared data of cloths with this recipe and material, and the factors that `factors` finds for its surface. The
-    /// surface is made by `make` if there is none yet.
+    /// surface is made by `make` if there is none yet. `before` is of the same cloth with other tears.
     ///
     /// # Errors
     /// Those of `make` and `factors`.
@@ -28,6 +28,7 @@ impl SharedParts {
         &mut self,
         recipe: &Recipe,
         material: &ClothMaterial,
+        before: Option<&Shared>,
         factors: impl FnOnce(&Surface) -> Result<Arc<StiffnessFactors>, ClothError>,
         make: impl FnOnce() -> Result<Surface, ClothError>,
     ) -> Result<Arc<Shared>, ClothError> {
@@ -41,7 +42,7 @@ impl SharedParts {
         if let Some(known) = alike.iter().find(|known| known.stiffnesses == stiffnesses) {
             return Ok(known.clone());
         }
-        let shared = Shared::new(recipe.clone(), material, surface, factors, &alike);
+        let shared = Shared::new(recipe.clone(), material, surface, factors, &alike, before);
         Ok(self.keep(shared))
     }
 
@@ -107,7 +108,9 @@ impl SharedParts {
         };
         // A surface of that recipe exists, so it can't be refused.
         let known = |_: &Surface| Ok(factors.clone());
-        let other = self.get(recipe, material, known, || Ok((*shared.surface).clone()));
+        let other = self.get(recipe, material, None, known, || {
+            Ok((*shared.surface).clone())
+        });
         other.unwrap_or_else(|_| shared.clone())
     }
 }

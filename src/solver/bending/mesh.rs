@@ -22,12 +22,10 @@
 
 use std::sync::Arc;
 
-use bevy::math::{DVec3, Vec3A, Vec4};
+use bevy::math::{Vec3A, Vec4};
 
 use super::{
-    creasing::ClothCreasing,
-    mesh_creases::MeshCreases,
-    patch::{Patch, RestFace, for_each_row, frame},
+    creasing::ClothCreasing, mesh_creases::MeshCreases, mesh_matrix::MeshMatrix, patch::frame,
     push::LIMIT,
 };
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, StiffnessFactors, Surface, W, Woven};
@@ -58,13 +56,7 @@ struct Row {
 #[derive(Debug, Clone)]
 pub(super) struct MeshBending {
     layout: Layout,
-    /// Where each particle's entries begin.
-    first: Arc<[u32]>,
-    /// Column and number (N/m) off the diagonal.
-    entries: Arc<[(u32, f32)]>,
-    /// On it.
-    diagonal: Arc<[f32]>,
-    rest: Arc<[RestFace]>,
+    matrix: Arc<MeshMatrix>,
     creases: Option<Box<MeshCreases>>,
     /// Sum of the absolute values of each particle's row (N/m), by block.
     bounds: Arc<[Lanes]>,
@@ -80,67 +72,30 @@ pub(super) struct MeshBending {
 }
 
 impl MeshBending {
-    /// Of a plate of these flexural rigidities (N·m), times the factor of each face. Without a grain, it has their mean in all
-    /// directions.
-    pub fn new(surface: &Surface, rigidity: Woven, factors: &StiffnessFactors) -> Self {
-        let places: Vec<DVec3> = surface
-            .rest_positions()
-            .iter()
-            .map(|place| place.as_dvec3())
-            .collect();
-        let bending = surface.bending_faces();
-        let mut patches = Vec::with_capacity(bending.faces().len());
-        let mut rest = Vec::new();
-        for (index, face) in bending.faces().iter().enumerate() {
-            let Some(mut patch) = Patch::new(*face, bending.beside(index), &places) else {
-                continue;
-            };
-            if let Some(warp) = surface
-                .bending_grain(index)
-                .filter(|_| rigidity.ratio != 1.0)
-            {
-                patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
-            }
-            let stiffness = f64::from(rigidity.mean * factors.of_face(*face)) * patch.area;
-            rest.extend(patch.rest(stiffness, &places));
-            patches.push((patch, stiffness));
-        }
-        let mut first = vec![0];
-        let mut diagonal = Vec::with_capacity(places.len());
-        let mut entries = Vec::new();
-        for_each_row(&patches, places.len(), |row, numbers| {
-            let on_it = numbers.iter().find(|(column, _)| *column == row);
-            diagonal.push(on_it.map_or(0.0, |(_, number)| *number as f32));
-            let others = numbers.iter().filter(|(column, _)| *column != row);
-            entries.extend(others.map(|(column, number)| (*column, *number as f32)));
-            first.push(entries.len() as u32);
-        });
+    /// Of the matrix of a surface.
+    pub fn new(matrix: MeshMatrix, surface: &Surface) -> Self {
         let layout = surface.layout();
         let mut bounds = vec![[0.0; LANES]; layout.blocks()];
         for (row, slot) in layout.slots().enumerate() {
-            let beside = entries[of(&first, row)].iter();
-            let sum = beside.map(|(_, number)| number.abs()).sum::<f32>() + diagonal[row];
+            let beside = matrix.of(row).iter();
+            let sum = beside.map(|(_, number)| number.abs()).sum::<f32>() + matrix.diagonal[row];
             bounds[slot.block][slot.lane] = sum;
         }
         Self {
             layout,
             bounds: bounds.into(),
             is_soft: true,
-            first: first.into(),
-            entries: entries.into(),
-            diagonal: diagonal.into(),
-            rest: rest.into(),
             creases: None,
             weight: 0.0,
-            rows: vec![Row::default(); places.len()],
-            directions: vec![Vec4::ZERO; places.len()],
-            places: vec![[Vec4::ZERO; 2]; places.len()],
+            rows: vec![Row::default(); matrix.len()],
+            directions: vec![Vec4::ZERO; matrix.len()],
+            places: vec![[Vec4::ZERO; 2]; matrix.len()],
+            matrix: Arc::new(matrix),
         }
     }
 
-    #[cfg(test)]
-    pub fn diagonal(&self) -> &[f32] {
-        &self.diagonal
+    pub fn matrix(&self) -> &MeshMatrix {
+        &self.matrix
     }
 
     pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
@@ -150,7 +105,7 @@ impl MeshBending {
             return;
         }
         let slots = self.layout.slots();
-        for ((row, slot), diagonal) in self.rows.iter_mut().zip(slots).zip(&*self.diagonal) {
+        for ((row, slot), diagonal) in self.rows.iter_mut().zip(slots).zip(&self.matrix.diagonal) {
             let inverse_mass = blocks[slot.block].view()[W + slot.lane];
             (row.mass, row.inverse) = if inverse_mass > 0.0 {
                 let mass = 1.0 / inverse_mass;
@@ -261,13 +216,13 @@ impl MeshBending {
         for at in 0..self.rows.len() {
             let [place, moved] = self.places[at];
             let mut sum = Vec4::ZERO;
-            for &(other, number) in &self.entries[of(&self.first, at)] {
+            for &(other, number) in self.matrix.of(at) {
                 let [there, moved_there] = self.places[other as usize];
                 sum += number * ((there - place) + (moved_there - moved));
             }
             self.rows[at].left = -sum;
         }
-        for face in &*self.rest {
+        for face in &self.matrix.rest {
             let [a, b, c, ..] = face.particles;
             let corners = [a, b, c].map(|at| {
                 let [place, moved] = self.places[at as usize];
@@ -337,12 +292,13 @@ impl MeshBending {
         }
         let enough = norm * TOLERANCE * TOLERANCE;
         let affordable = MAX_WORK / self.rows.len().max(1);
+        let matrix = &*self.matrix;
         for _ in 0..affordable.clamp(FEWEST_ITERATIONS, MAX_ITERATIONS) {
             let mut energy = 0.0;
             for at in 0..self.rows.len() {
                 let (row, own) = (&mut self.rows[at], self.directions[at]);
-                let mut sum = self.diagonal[at] * own;
-                for &(other, number) in &self.entries[of(&self.first, at)] {
+                let mut sum = matrix.diagonal[at] * own;
+                for &(other, number) in matrix.of(at) {
                     sum += number * self.directions[other as usize];
                 }
                 row.image = row.mass * own + self.weight * sum;
@@ -375,36 +331,4 @@ impl MeshBending {
     pub fn is_soft(&self) -> bool {
         self.is_soft
     }
-
-    /// K (N/m), dense. Its rows add up to nothing, as the forces do.
-    pub fn matrix(&self) -> Vec<Vec<f64>> {
-        let count = self.diagonal.len();
-        let row = |row: usize| {
-            let mut numbers = vec![0.0; count];
-            for &(column, number) in &self.entries[of(&self.first, row)] {
-                numbers[column as usize] += f64::from(number);
-                numbers[row] -= f64::from(number);
-            }
-            numbers
-        };
-        (0..count).map(row).collect()
-    }
-
-    /// ½ xᵀ K x of one coordinate (J), by differences, as the forces are.
-    pub fn energy(&self, places: &[f64]) -> f64 {
-        let of_row = |row: usize| {
-            let beside = self.entries[of(&self.first, row)].iter();
-            let between = |&(other, number): &(u32, f32)| {
-                f64::from(number) * (places[other as usize] - places[row]).powi(2)
-            };
-            beside.map(between).sum::<f64>()
-        };
-        // Each pair is seen from both ends.
-        -(0..places.len()).map(of_row).sum::<f64>() / 4.0
-    }
-}
-
-/// The entries of a row.
-fn of(first: &[u32], row: usize) -> std::ops::Range<usize> {
-    first[row] as usize..first[row + 1] as usize
 }

@@ -18,6 +18,7 @@ mod grid;
 mod grid_creases;
 mod mesh;
 mod mesh_creases;
+mod mesh_matrix;
 mod patch;
 mod plate;
 mod push;
@@ -33,6 +34,7 @@ use crate::cloth::{Block, ClothMaterial, StiffnessFactors, Surface};
 pub use creasing::ClothCreasing;
 use grid::GridBending;
 use mesh::MeshBending;
+use mesh_matrix::{KnownMatrix, MeshMatrix};
 pub(super) use schedule::BendingSchedule;
 pub(crate) use torn_creases::creases_of_torn;
 
@@ -52,14 +54,16 @@ enum Kind {
 impl Bending {
     /// The resistance of a surface; `None` if its material bends freely.
     pub fn new(surface: &Surface, material: &ClothMaterial) -> Option<Self> {
-        Self::with_factors(surface, material, Arc::default())
+        Self::with_factors(surface, material, Arc::default(), None)
     }
 
-    /// The same of a mesh whose rigidity differs from place to place. A grid takes no factors.
+    /// The same of a mesh whose rigidity differs from place to place. A grid takes no factors. `known` is of the same material, for a
+    /// surface that was torn in another way: a mesh copies the part that does not change.
     pub(crate) fn with_factors(
         surface: &Surface,
         material: &ClothMaterial,
         factors: Arc<StiffnessFactors>,
+        known: Option<(&Self, &Surface)>,
     ) -> Option<Self> {
         let rigidities = material.bend_rigidities();
         if rigidities[0].max(rigidities[1]) <= 0.0 || surface.is_empty() {
@@ -67,11 +71,18 @@ impl Bending {
         }
         let of = match surface.as_grid() {
             Some(grid) => Kind::Grid(Box::new(GridBending::new(grid, rigidities))),
-            None => Kind::Mesh(MeshBending::new(
-                surface,
-                material.woven_bending(),
-                &factors,
-            )),
+            None => {
+                let known = known.and_then(|(known, surface)| match &known.of {
+                    Kind::Grid(_) => None,
+                    Kind::Mesh(mesh) => Some(KnownMatrix {
+                        matrix: mesh.matrix(),
+                        surface,
+                        factors: &known.factors,
+                    }),
+                });
+                let matrix = MeshMatrix::new(surface, material.woven_bending(), &factors, known);
+                Kind::Mesh(MeshBending::new(matrix, surface))
+            }
         };
         Some(Self { of, factors })
     }
@@ -81,7 +92,7 @@ impl Bending {
     pub(crate) fn matrix(&self) -> Option<*const f32> {
         match &self.of {
             Kind::Grid(_) => None,
-            Kind::Mesh(mesh) => Some(mesh.diagonal().as_ptr()),
+            Kind::Mesh(mesh) => Some(mesh.matrix().diagonal.as_ptr()),
         }
     }
 

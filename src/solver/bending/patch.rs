@@ -2,6 +2,8 @@
 
 use bevy::math::{DMat3, DVec2, DVec3, Vec3, Vec3A};
 
+use crate::cloth::ByParticle;
+
 /// Regularisation, as a fraction: edges with nearly the same information about a face's curvature don't make it
 /// infinite.
 const REGULAR: f64 = 1.0e-3;
@@ -9,8 +11,10 @@ const REGULAR: f64 = 1.0e-3;
 const FLAT: f64 = 1.0e-4;
 
 /// The forces of a face that is curved at rest.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RestFace {
+    /// Its index among the faces on which the surface bends.
+    pub face: u32,
     /// Its corners first.
     pub particles: [u32; 6],
     /// Force of its rest curvature on each (N), in the face's frame.
@@ -31,26 +35,19 @@ pub(super) fn for_each_row(
     rows: usize,
     mut visit: impl FnMut(u32, &[(u32, f64)]),
 ) {
-    // The patches around each particle.
-    let mut first = vec![0_u32; rows + 1];
-    let particles = || patches.iter().flat_map(|(patch, _)| patch.particles);
-    particles().for_each(|particle| first[particle as usize + 1] += 1);
-    for row in 0..rows {
-        first[row + 1] += first[row];
-    }
-    let mut next = first.clone();
-    let mut around = vec![(0, 0); 6 * patches.len()];
-    for (at, particle) in particles().enumerate() {
-        let next = &mut next[particle as usize];
-        around[*next as usize] = (at / 6, at % 6);
-        *next += 1;
-    }
+    // The patches around each particle, and which of their particles it is.
+    let around = ByParticle::new(rows, || {
+        let all = patches.iter().flat_map(|(patch, _)| patch.particles);
+        let places =
+            (0..patches.len() as u32).flat_map(|patch| (0..6_u32).map(move |at| (patch, at)));
+        all.zip(places)
+    });
     const NONE: u32 = u32::MAX;
     let mut numbers: Vec<(u32, f64)> = Vec::new();
     // Where the number of each column is.
     let mut place = vec![NONE; rows];
-    for row in 0..rows {
-        for &(patch, a) in &around[first[row] as usize..first[row + 1] as usize] {
+    for row in 0..rows as u32 {
+        for &(patch, a) in around.of(row) {
             let (
                 Patch {
                     particles,
@@ -58,9 +55,9 @@ pub(super) fn for_each_row(
                     ..
                 },
                 stiffness,
-            ) = &patches[patch];
+            ) = &patches[patch as usize];
             for (b, column) in particles.iter().enumerate() {
-                let product: f64 = curvature.iter().map(|of| of[a] * of[b]).sum();
+                let product: f64 = curvature.iter().map(|of| of[a as usize] * of[b]).sum();
                 if product == 0.0 {
                     continue;
                 }
@@ -73,7 +70,7 @@ pub(super) fn for_each_row(
             }
         }
         numbers.sort_unstable_by_key(|(column, _)| *column);
-        visit(row as u32, &numbers);
+        visit(row, &numbers);
         for (column, _) in numbers.drain(..) {
             place[column as usize] = NONE;
         }
@@ -184,8 +181,8 @@ impl Patch {
         }
     }
 
-    /// Its forces if it is curved at rest.
-    pub fn rest(&self, stiffness: f64, places: &[DVec3]) -> Option<RestFace> {
+    /// The forces of a face with this index, if it is curved at rest.
+    pub fn rest(&self, face: u32, stiffness: f64, places: &[DVec3]) -> Option<RestFace> {
         let at = self.particles.map(|particle| places[particle as usize]);
         let bent = self.curvature.map(|of| -> DVec3 {
             let each = of.iter().zip(&at);
@@ -206,6 +203,7 @@ impl Patch {
             [x, y, z].map(|axis| force.dot(axis))
         });
         Some(RestFace {
+            face,
             particles: self.particles,
             forces,
         })

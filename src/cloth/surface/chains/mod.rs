@@ -11,6 +11,8 @@ mod tests;
 
 use bevy::math::{Vec2, Vec3};
 
+use crate::cloth::by_particle::ByParticle;
+
 /// The cosine of the smallest angle between two edges that continue each other: 135°.
 const STRAIGHT: f32 = -std::f32::consts::FRAC_1_SQRT_2;
 
@@ -90,19 +92,22 @@ fn continuations(
     rest: &[Vec3],
     normals: impl Fn(u32) -> Vec3,
 ) -> Vec<[u32; 2]> {
-    let mut ends: Vec<(u32, u32, usize)> = Vec::with_capacity(2 * edges.len());
-    for (edge, [a, b]) in edges.iter().enumerate() {
-        ends.extend([(*a, edge as u32, 0), (*b, edge as u32, 1)]);
-    }
-    ends.sort_unstable();
+    // Edges, and which of their ends is there.
+    let ends = ByParticle::new(rest.len(), || {
+        let edges = (0_u32..).zip(edges);
+        edges.flat_map(|(edge, [a, b])| [(*a, (edge, 0_usize)), (*b, (edge, 1))])
+    });
     let mut next = vec![[NONE; 2]; edges.len()];
     let mut directions = Vec::new();
     let mut pairs = Vec::new();
-    for around in ends.chunk_by(|a, b| a.0 == b.0) {
-        let particle = around[0].0;
+    for particle in 0..rest.len() as u32 {
+        let around = ends.of(particle);
+        if around.len() < 2 {
+            continue;
+        }
         let (u, v) = normals(particle).any_orthonormal_pair();
         directions.clear();
-        directions.extend(around.iter().map(|&(_, edge, end)| {
+        directions.extend(around.iter().map(|&(edge, end)| {
             let other = edges[edge as usize][1 - end];
             let span = rest[other as usize] - rest[particle as usize];
             Vec2::new(span.dot(u), span.dot(v)).normalize_or_zero()
@@ -118,7 +123,7 @@ fn continuations(
         }
         pairs.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         for &(_, i, j) in &pairs {
-            let [(_, a, end_a), (_, b, end_b)] = [around[i], around[j]];
+            let [(a, end_a), (b, end_b)] = [around[i], around[j]];
             if next[a as usize][end_a] == NONE && next[b as usize][end_b] == NONE {
                 next[a as usize][end_a] = b;
                 next[b as usize][end_b] = a;

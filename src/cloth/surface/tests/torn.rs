@@ -244,6 +244,49 @@ fn torn_springs_pull_as_hard_together() {
     }
 }
 
+/// The sides of a torn surface are those of its faces, and those at one edge lie beside each other; also where three faces meet.
+#[test]
+fn torn_sides_are_those_of_the_faces() {
+    let mut random = Random(11);
+    let places = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [2, 0, 0],
+        [0, 1, 0],
+        [2, 1, 0],
+        [1, -1, 1],
+        [1, -1, -1],
+    ];
+    let positions = places.map(|place| Vec3::from_array(place.map(|along| along as f32)));
+    let fins = TriangleMesh {
+        positions: positions.to_vec(),
+        triangles: vec![
+            [0, 1, 3],
+            [1, 0, 5],
+            [0, 1, 6],
+            [1, 2, 4],
+            [2, 1, 5],
+            [1, 2, 6],
+        ],
+        ..Default::default()
+    };
+    let fins = Surface::of_mesh(&fins, 0.0, Vec3::ONE).expect("a surface");
+    for whole in [grid(), mesh(), Arc::new(fins)] {
+        let all = edges(&whole);
+        for count in [0, 1, 2, 5, 20] {
+            let surface = whole.torn(&some(&all, count, &mut random)).expect("edges");
+            let torn = surface.torn.as_ref().expect("a torn surface");
+            let mut sides = torn.sides();
+            let runs = sides.chunk_by(|a, b| a.ends == b.ends).count();
+            sides.sort_unstable();
+            assert_eq!(sides, springs::sides_of(&torn.corners));
+            let mut ends: Vec<[u32; 2]> = sides.iter().map(|side| side.ends).collect();
+            ends.dedup();
+            assert_eq!(runs, ends.len());
+        }
+    }
+}
+
 #[test]
 fn an_edge_that_is_none_is_named() {
     for edge in [[0, 17], [3, 3], [0, 4_000], [9, 8]] {

@@ -24,29 +24,36 @@ impl Torn {
         let (mut across, mut along) = (Vec::new(), Vec::new());
         let mut is_border = vec![false; self.origin.len()];
         let area = |side: &Side| face_area(faces[side.face as usize], &whole.rest);
+        let mut own = Vec::new();
         for sides in (whole.incidence().sides).chunk_by(|a, b| a.ends == b.ends) {
-            let total: f32 = sides.iter().map(area).sum();
             let is_diagonal =
                 is_grid && whole.diagonal_of(faces[sides[0].face as usize]) == sides[0].ends;
             let known = if is_grid { None } else { known_along.next() };
-            let own: Vec<[u32; 2]> = sides.iter().map(|side| self.ends(side)).collect();
+            own.clear();
+            own.extend(sides.iter().map(|side| self.ends(side)));
+            let is_torn = own.iter().any(|ends| *ends != own[0]);
             for (index, ends) in own.iter().enumerate() {
                 if own[..index].contains(ends) {
                     continue;
                 }
                 let alike = sides.iter().zip(&own).filter(|(_, other)| *other == ends);
-                let (count, part) = alike.fold((0, 0.0), |(count, sum), (side, _)| {
-                    (count + 1, sum + area(side))
-                });
+                let count = alike.clone().count() as u32;
                 if count != 2 {
                     ends.iter().for_each(|end| is_border[*end as usize] = true);
                 }
                 match known {
-                    Some(known) => along.push(Link {
-                        ends: *ends,
-                        slenderness: known.slenderness * (total / part),
-                        ..*known
-                    }),
+                    Some(known) => {
+                        let mut link = Link {
+                            ends: *ends,
+                            ..*known
+                        };
+                        if is_torn {
+                            let total: f32 = sides.iter().map(area).sum();
+                            link.slenderness *=
+                                total / alike.map(|(side, _)| area(side)).sum::<f32>();
+                        }
+                        along.push(link);
+                    }
                     None if is_diagonal => {
                         across.push(whole.grid_link(SpringKind::Shear, *ends, self, count));
                     }
@@ -70,6 +77,27 @@ impl Torn {
         (across, is_border)
     }
 
+    /// The sides of its faces, which are in the order of the whole surface's. Those at one edge follow each other.
+    pub fn sides(&self) -> Vec<Side> {
+        let of_whole = &self.whole.incidence().sides;
+        let mut all: Vec<Side> = Vec::with_capacity(of_whole.len());
+        for sides in of_whole.chunk_by(|a, b| a.ends == b.ends) {
+            let begin = all.len();
+            for side in sides {
+                let own = Side {
+                    ends: self.ends(side),
+                    face: side.face,
+                    opposite: self.corner(side.face, side.opposite),
+                };
+                let beside = all[begin..]
+                    .iter()
+                    .rposition(|known| known.ends == own.ends);
+                all.insert(beside.map_or(all.len(), |at| begin + at + 1), own);
+            }
+        }
+        all
+    }
+
     /// The particle at a corner of a face, by the particle of the whole surface.
     fn corner(&self, face: u32, particle: u32) -> u32 {
         let face = face as usize;
@@ -79,7 +107,8 @@ impl Torn {
 
     /// The ends of a face's side.
     fn ends(&self, side: &Side) -> [u32; 2] {
-        let [a, b] = side.ends.map(|end| self.corner(side.face, end));
+        let [a, b] = side.ends;
+        let (a, b) = (self.corner(side.face, a), self.corner(side.face, b));
         [a.min(b), a.max(b)]
     }
 }

@@ -1,5 +1,7 @@
 //! Faces and what lies across their edges.
 
+use crate::cloth::surface::springs::{self, Side};
+
 /// Faces, and the faces across their edges.
 #[derive(Debug, Clone)]
 pub(crate) struct Triangulation {
@@ -23,8 +25,13 @@ pub(super) struct Turn {
 impl Triangulation {
     /// The faces of a torn surface, turned as those of the whole one where they still hang together. `origin` is the particle of
     /// the whole surface that a particle was.
-    pub fn torn(faces: &[[u32; 3]], whole: &Self, origin: impl Fn(u32) -> u32) -> Self {
-        let mut new = Self::of(faces);
+    pub(in crate::cloth::surface) fn torn(
+        faces: &[[u32; 3]],
+        sides: &[Side],
+        whole: &Self,
+        origin: impl Fn(u32) -> u32,
+    ) -> Self {
+        let mut new = Self::of(faces, sides);
         for turn in &whole.turns {
             let quad = new.quad(turn.face, turn.edge);
             if quad.is_some_and(|quad| quad.map(&origin) == turn.quad) {
@@ -34,23 +41,22 @@ impl Triangulation {
         new
     }
 
-    /// Those faces themselves.
-    pub fn of(faces: &[[u32; 3]]) -> Self {
-        let mut sides = Vec::with_capacity(3 * faces.len());
-        for (face, corners) in faces.iter().enumerate() {
-            for edge in 0..3 {
-                let [a, b, opposite] = [0, 1, 2].map(|on| corners[(edge + on) % 3]);
-                sides.push((sorted([a, b]), face, edge, opposite));
-            }
-        }
-        sides.sort_unstable();
+    /// Those faces themselves. `sides` are all of theirs, those at one edge beside each other.
+    pub(in crate::cloth::surface) fn of(faces: &[[u32; 3]], sides: &[Side]) -> Self {
         let mut across = vec![[None; 3]; faces.len()];
-        for sides in sides.chunk_by(|a, b| a.0 == b.0) {
-            if let [one, other] = sides {
-                // Two faces of the same corners lie on each other.
-                if one.3 != other.3 {
-                    across[one.1][one.2] = Some(other.1 as u32);
-                    across[other.1][other.2] = Some(one.1 as u32);
+        for sides in sides.chunk_by(|a, b| a.ends == b.ends) {
+            // Two faces of the same corners lie on each other.
+            if let [one, other] = sides
+                && one.opposite != other.opposite
+            {
+                for (own, beyond) in [(one, other), (other, one)] {
+                    let face = own.face as usize;
+                    let edges = springs::sides(faces[face]);
+                    for (across, ends) in across[face].iter_mut().zip(edges) {
+                        if ends == own.ends {
+                            *across = Some(beyond.face);
+                        }
+                    }
                 }
             }
         }

@@ -9,7 +9,7 @@ use super::{
     faces::sorted,
     turning::{ALIKE, Turning},
 };
-use crate::cloth::surface::{Surface, TriangleMesh};
+use crate::cloth::surface::{Surface, TriangleMesh, springs::sides_of};
 
 const SIDE: u32 = 12;
 
@@ -67,6 +67,10 @@ fn directions(faces: &[[u32; 3]]) -> [usize; 2] {
     [SIDE + 2, SIDE].map(|length| lengths.iter().filter(|of| **of == length).count() / 2)
 }
 
+fn plain(faces: &[[u32; 3]]) -> Triangulation {
+    Triangulation::of(faces, &sides_of(faces))
+}
+
 fn turned(faces: &[[u32; 3]], places: &[DVec3]) -> Triangulation {
     super::turned(faces, places, &[])
 }
@@ -114,9 +118,9 @@ fn irregular_faces_become_about_delaunay() {
         assert_eq!(areas.len(), faces.len());
         // A sum of 288 numbers.
         assert!((areas.iter().sum::<f64>() - all).abs() < 1.0e-12 * all);
-        let again = Triangulation::of(found.faces());
+        let again = plain(found.faces());
         assert!((0..faces.len()).all(|face| found.beside(face) == again.beside(face)));
-        let mut turning = Turning::new(Triangulation::of(&faces), &places, &[]);
+        let mut turning = Turning::new(plain(&faces), &places, &[]);
         turning.turn_worse_ones();
         assert!(!turning.of.turns.is_empty());
         for (face, edge) in (0..faces.len()).flat_map(|face| [0, 1, 2].map(|edge| (face, edge))) {
@@ -159,7 +163,7 @@ fn what_is_folded_woven_or_closed_stays() {
         each.filter(|(face, edge)| is_ridge(of.edge(*face, *edge)))
             .count()
     };
-    assert_eq!(ridges(&found), ridges(&Triangulation::of(&faces)));
+    assert_eq!(ridges(&found), ridges(&plain(&faces)));
     let corners = [
         DVec3::ZERO,
         3.0 * DVec3::X,
@@ -168,7 +172,7 @@ fn what_is_folded_woven_or_closed_stays() {
     ];
     let pillow = [[0, 1, 2], [1, 0, 3], [0, 2, 3], [1, 3, 2]];
     assert!(
-        Turning::new(Triangulation::of(&pillow), &corners, &[])
+        Turning::new(plain(&pillow), &corners, &[])
             .cotangents(0, 0)
             .is_some_and(|[sum, _]| sum < -ALIKE),
         "the front's other diagonal would be better"

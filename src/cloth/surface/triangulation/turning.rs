@@ -8,6 +8,7 @@ use bevy::{
 };
 
 use super::faces::{Triangulation, sorted};
+use crate::cloth::surface::springs::sides_of;
 
 /// Sum of the cotangents of the two angles that an edge is seen under: below −`ALIKE`, the other diagonal is better; within
 /// ±`ALIKE` for both, they are as good. Squares whose vertices are out of place by a fortieth of a side, in x and in y, reach 0.2.
@@ -23,7 +24,8 @@ pub(in crate::cloth::surface) fn turned(
     places: &[DVec3],
     grain: &[Vec3],
 ) -> Triangulation {
-    let mut turning = Turning::new(Triangulation::of(faces), places, grain);
+    let of = Triangulation::of(faces, &sides_of(faces));
+    let mut turning = Turning::new(of, places, grain);
     turning.turn_worse_ones();
     turning.align();
     turning.of

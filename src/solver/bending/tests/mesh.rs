@@ -10,7 +10,7 @@ fn expected(bending: &Bending, particles: &ClothParticles, weight: f64) -> [Vec<
     let Kind::Mesh(mesh) = &bending.of else {
         panic!("a mesh's");
     };
-    let mut matrix = mesh.matrix();
+    let mut matrix = mesh.matrix().dense();
     let (masses, places) = start(particles);
     let is_free = |at: usize| masses[at].is_finite();
     let force = |row: &Vec<f64>| -> DVec3 {
@@ -83,10 +83,11 @@ fn a_mesh_is_bent_as_its_dense_matrix_says() {
 #[test]
 fn a_constant_curvature_leaves_no_force() {
     let surface = sheet(12, 0.0, |place| place);
-    let mesh = MeshBending::new(
+    let mesh = MeshMatrix::new(
         &surface,
         material().woven_bending(),
         &StiffnessFactors::default(),
+        None,
     );
     let places = surface.rest_positions().iter();
     let places: Vec<DVec3> = places
@@ -98,7 +99,7 @@ fn a_constant_curvature_leaves_no_force() {
         ("xy", |at| at.x * at.y),
     ] {
         let heights: Vec<f64> = places.iter().map(|at| square(*at)).collect();
-        for (at, row) in mesh.matrix().iter().enumerate() {
+        for (at, row) in mesh.dense().iter().enumerate() {
             if places[at].truncate().abs().max_element() > 0.07 {
                 continue;
             }

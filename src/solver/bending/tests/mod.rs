@@ -4,6 +4,7 @@ mod creases;
 mod dense;
 mod mesh;
 mod soft;
+mod torn;
 
 use bevy::math::{DVec3, Quat, Vec3};
 
@@ -252,10 +253,11 @@ fn nothing_pulls_from_outside() {
 fn meshes_are_as_stiff_as_the_plate_in_all_directions() {
     for jitter in [0.0, 0.25] {
         let surface = sheet(40, jitter, |place| place);
-        let mesh = MeshBending::new(
+        let mesh = MeshMatrix::new(
             &surface,
             material().woven_bending(),
             &StiffnessFactors::default(),
+            None,
         );
         for degrees in [0.0_f64, 22.5, 45.0, 90.0, 135.0] {
             let (sine, cosine) = degrees.to_radians().sin_cos();
@@ -292,10 +294,11 @@ fn woven_meshes_are_as_stiff_as_the_plate_in_all_directions() {
         let surface = ClothGrain::along(along)
             .apply(surface, &TriangleMesh::default())
             .expect("a grain");
-        let mesh = MeshBending::new(
+        let mesh = MeshMatrix::new(
             &surface,
             material.woven_bending(),
             &StiffnessFactors::default(),
+            None,
         );
         for degrees in [0.0_f64, 30.0, 45.0, 90.0, 120.0] {
             let (sine, cosine) = degrees.to_radians().sin_cos();
