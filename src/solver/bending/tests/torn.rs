@@ -26,11 +26,15 @@ fn a_matrix_follows_tears() {
         MeshMatrix::new(surface, material.woven_bending(), factors, known)
     };
     // By the particle of the whole surface, as maps are.
-    let factors_of = |surface: &Surface, is_mapped: bool| {
+    let factors_of = |surface: &Surface, is_mapped: bool, step: u32| {
         let each = 0..if is_mapped { surface.len() as u32 } else { 0 };
         StiffnessFactors {
             bending: each
-                .map(|at| 1.0 + (surface.origin_of(at) % 5) as f32)
+                .map(|at| match surface.origin_of(at) {
+                    // It changes at one particle a step.
+                    origin if origin == 60 + step => 9.0,
+                    origin => 1.0 + (origin % 5) as f32,
+                })
                 .collect(),
             ..Default::default()
         }
@@ -47,7 +51,7 @@ fn a_matrix_follows_tears() {
         let mut tears = ClothTears::default();
         let torn = |tears: &ClothTears| whole.torn(tears.edges()).expect("edges that exist");
         let mut before = torn(&tears);
-        let mut factors = factors_of(&before, name == "mapped");
+        let mut factors = factors_of(&before, name == "mapped", 0);
         let mut known = matrix(&before, &factors, None);
         assert_eq!(!known.rest.is_empty(), name == "curved");
         let mut most_pieces = 0;
@@ -62,7 +66,7 @@ fn a_matrix_follows_tears() {
             }
             let after = torn(&tears);
             most_pieces = after.pieces().max(most_pieces);
-            let factors_after = factors_of(&after, name == "mapped");
+            let factors_after = factors_of(&after, name == "mapped", step + 1);
             let known_before = KnownMatrix {
                 matrix: &known,
                 surface: &before,
