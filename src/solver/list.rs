@@ -13,7 +13,7 @@ use bevy::math::Vec4;
 
 use super::{
     chains::Bundles,
-    kernels::{Kernels, Packet, Row, SPRINGS, StepScale, Stiffer, turned},
+    kernels::{Kernels, Packet, Row, SPRINGS, StepScale, Stiffer, four, turned},
     spring_solver::{Motion, SolvedSubstep, SpringSolver},
     stretch::Stretch,
 };
@@ -102,7 +102,7 @@ impl ListSolver {
                 let view = block.view();
                 for half in [0, HALF] {
                     let of = |from: usize| Vec4::from_slice(&view[from + half..][..HALF]);
-                    let places = turned([X, Y, Z, W].map(of));
+                    let places = turned([of(X), of(Y), of(Z), of(W)]);
                     let moved = turned([of(DX), of(DY), of(DZ), Vec4::ZERO]);
                     for lane in 0..HALF {
                         strips[half + lane][at] = Row {
@@ -126,7 +126,7 @@ impl ListSolver {
             for (at, block) in blocks.iter_mut().enumerate() {
                 let view = block.view_mut();
                 for half in [0, HALF] {
-                    let moved = [0, 1, 2, 3].map(|lane| strips[half + lane][at].moved);
+                    let moved = four(|lane| strips[half + lane][at].moved);
                     for (from, numbers) in [DX, DY, DZ].into_iter().zip(turned(moved)) {
                         view[from + half..][..HALF].copy_from_slice(&numbers.to_array());
                     }

@@ -20,7 +20,7 @@ use crate::{
     solver::kernels::{Enclosed, Vec3Lanes},
 };
 
-/// Largest speed at which gas moves a face outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
+/// Largest speed at which gas moves particles outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
 pub(crate) const FILLING: f32 = 10.0;
 
 /// An amount of gas, and the pressure around it.

@@ -273,7 +273,7 @@ impl Airflow {
             winds.fill(wind.to_array().map(|of| [of; LANES]));
         }
         if let Some(triangles) = triangles {
-            let enclosed = triangles.areas(particles, areas);
+            let enclosed = triangles.areas(blocks, areas);
             if let Some(ClothPressure::Gauge(pressure)) = pressure {
                 let outwards = enclosed.outwards * enclosed.volume.signum();
                 coefficients.pressure = pressure * outwards as f32;

@@ -132,7 +132,8 @@ impl MeshBending {
     fn load(&mut self, blocks: &[Block]) {
         for (lane, places) in self.places.chunks_mut(blocks.len().max(1)).enumerate() {
             for (place, block) in places.iter_mut().zip(blocks) {
-                *place = [block.position(lane), block.displacement(lane)].map(|of| of.extend(0.0));
+                let (position, moved) = (block.position(lane), block.displacement(lane));
+                *place = [position.extend(0.0), moved.extend(0.0)];
             }
         }
     }

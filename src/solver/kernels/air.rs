@@ -4,8 +4,8 @@
 //! A pass over eight particles needs three roots and two divisions, which take a core with AVX2 some 45 cycles. It also
 //! needs some 80 additions and multiplications, two per cycle. A sub-step adds 14 of these and six loads.
 
-use super::{barrier::one_block_at_a_time, pentadiagonal::Vec3Lanes};
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z};
+use super::{barrier::one_block_at_a_time, each::three, pentadiagonal::Vec3Lanes};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X};
 
 /// The air's action on eight particles until its next evaluation: an acceleration of `push − drag (drag · v)` at the
 /// velocity v.
@@ -56,12 +56,12 @@ fn linearize(
     for l in 0..LANES {
         let normal = [area[0][l], area[1][l], area[2][l]];
         let moved = [view[DX + l], view[DY + l], view[DZ + l]];
-        let v = moved.map(|moved| moved * coefficients.inverse_substep);
+        let v = three(|axis| moved[axis] * coefficients.inverse_substep);
         let u = [wind[0][l] - v[0], wind[1][l] - v[1], wind[2][l] - v[2]];
         let square = dot(normal, normal);
         let square = if square > NO_AREA { square } else { NO_AREA };
         let inverse = 1.0 / square.sqrt();
-        let n = normal.map(|of| of * inverse);
+        let n = three(|axis| normal[axis] * inverse);
         let along = dot(u, n);
         let across = dot(u, u) - along * along;
         let across = if across > 0.0 { across.sqrt() } else { 0.0 };
@@ -93,8 +93,8 @@ fn linearize(
 /// the displacements at the start of sub-steps.
 #[inline(always)]
 fn place_along(view: &View, linearized: &LinearizedDrag, l: usize) -> f32 {
-    let drag = [0, 1, 2].map(|axis| linearized.drag[axis][l]);
-    let was = [X, Y, Z].map(|axis| view[axis + l] - view[DX + axis + l]);
+    let drag = three(|axis| linearized.drag[axis][l]);
+    let was = three(|axis| view[X + axis * LANES + l] - view[DX + axis * LANES + l]);
     dot(drag, was)
 }
 
@@ -132,7 +132,7 @@ pub(crate) fn air_impulse(
     for ((block, linearized), place) in blocks.iter().zip(linearized).zip(places) {
         let view = block.view();
         for l in 0..LANES {
-            let drag = [0, 1, 2].map(|axis| linearized.drag[axis][l]);
+            let drag = three(|axis| linearized.drag[axis][l]);
             let moved = place_along(view, linearized, l) - place[l];
             let is_free = view[W + l] > 0.0;
             let mass = 1.0 / if is_free { view[W + l] } else { 1.0 };
@@ -153,9 +153,9 @@ pub(crate) fn acceleration(
     inverse_substep: f32,
     l: usize,
 ) -> [f32; 3] {
-    let drag = [0, 1, 2].map(|axis| linearized.drag[axis][l]);
+    let drag = three(|axis| linearized.drag[axis][l]);
     let slowed = dot(drag, moved) * inverse_substep;
-    [0, 1, 2].map(|axis| linearized.push[axis][l] - drag[axis] * slowed)
+    three(|axis| linearized.push[axis][l] - drag[axis] * slowed)
 }
 
 /// Adds the air's share to displacements, with this weight (s²).

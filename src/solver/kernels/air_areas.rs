@@ -1,9 +1,9 @@
 //! The face of a particle: its normal, as long as its area.
 
-use bevy::math::{Vec3, Vec3A};
+use bevy::math::Vec3A;
 
-use super::{barrier::one_block_at_a_time, pentadiagonal::Vec3Lanes};
-use crate::cloth::{Block, ClothParticles, LANES, Lanes, Slot, Surface, View, X};
+use super::{barrier::one_block_at_a_time, each::three, pentadiagonal::Vec3Lanes};
+use crate::cloth::{Block, LANES, Lanes, Slot, Surface, View, X};
 
 /// A row of a grid, and the rows above and below it, itself where there is none.
 pub(crate) struct Rows<'a> {
@@ -36,8 +36,8 @@ pub(crate) fn air_areas(rows: &Rows, areas: &mut [Vec3Lanes]) {
         };
         let (above, below) = (rows.above[j].view(), rows.below[j].view());
         for l in 0..LANES {
-            let a = [0, 1, 2].map(|axis| below[X + axis * LANES + l] - above[X + axis * LANES + l]);
-            let b = [0, 1, 2].map(|axis| right[axis][l] - left[axis][l]);
+            let a = three(|axis| below[X + axis * LANES + l] - above[X + axis * LANES + l]);
+            let b = three(|axis| right[axis][l] - left[axis][l]);
             area[0][l] = 0.25 * (a[1] * b[2] - a[2] * b[1]);
             area[1][l] = 0.25 * (a[2] * b[0] - a[0] * b[2]);
             area[2][l] = 0.25 * (a[0] * b[1] - a[1] * b[0]);
@@ -93,7 +93,7 @@ pub(crate) struct Enclosed {
     pub volume: f64,
     /// 1, or −1 where faces are turned inwards.
     pub outwards: f64,
-    /// Of all faces (m²).
+    /// Of all particles (m²): how fast the volume grows where all move outwards along their normals.
     pub area: f64,
 }
 
@@ -107,60 +107,77 @@ impl Triangles {
             places: vec![Vec3A::ZERO; places.len()],
             areas: vec![Vec3A::ZERO; places.len()],
         };
-        triangles.place(places.iter().copied());
-        triangles.outwards = if triangles.enclose().volume < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        if let [origin, ..] = *places {
+            let from_first = places.iter().map(|place| Vec3A::from(*place - origin));
+            triangles
+                .places
+                .iter_mut()
+                .zip(from_first)
+                .for_each(|(known, place)| *known = place);
+        }
+        triangles.add_up();
+        if triangles.enclosed().volume < 0.0 {
+            triangles.outwards = -1.0;
+        }
         triangles
     }
 
     /// The areas of all particles: a third of each of their triangles (m²). Returns what these enclose, if they enclose anything.
-    pub fn areas(&mut self, particles: &ClothParticles, areas: &mut [Vec3Lanes]) -> Enclosed {
-        self.place(particles.positions());
-        let enclosed = self.enclose();
-        for (area, slot) in self.areas.iter().zip(particles.layout().slots()) {
-            let area = (*area / 6.0).to_array();
-            for axis in 0..3 {
-                areas[slot.block][axis][slot.lane] = area[axis];
+    ///
+    /// A mesh's particles lie in one row of the layout: lane after lane.
+    pub fn areas(&mut self, blocks: &[Block], areas: &mut [Vec3Lanes]) -> Enclosed {
+        let Some(first) = blocks.first() else {
+            return Enclosed::default();
+        };
+        // Near the first of them, so that little is rounded away.
+        let origin = first.position(0);
+        for (lane, places) in self.places.chunks_mut(blocks.len()).enumerate() {
+            for (place, block) in places.iter_mut().zip(blocks) {
+                *place = (block.position(lane) - origin).into();
             }
         }
-        enclosed
-    }
-
-    /// Near the first of them, so that little is rounded away.
-    fn place(&mut self, mut places: impl Iterator<Item = Vec3>) {
-        let Some(origin) = places.next() else {
-            return;
-        };
-        for (known, place) in self.places[1..].iter_mut().zip(places) {
-            *known = (place - origin).into();
+        self.add_up();
+        for (lane, sums) in self.areas.chunks(blocks.len()).enumerate() {
+            for (sum, area) in sums.iter().zip(&mut *areas) {
+                let own = *sum / 6.0;
+                [area[0][lane], area[1][lane], area[2][lane]] = own.to_array();
+            }
         }
+        self.enclosed()
     }
 
-    fn enclose(&mut self) -> Enclosed {
+    /// Adds up the areas around each particle.
+    fn add_up(&mut self) {
         self.areas.fill(Vec3A::ZERO);
-        let (mut volume, mut area) = (0.0_f64, 0.0_f64);
         for corners in &self.corners {
-            let [a, b, c] = corners.map(|corner| self.places[corner as usize]);
+            let [a, b, c] = three(|at| self.places[corners[at] as usize]);
             let double = (b - a).cross(c - a);
             for corner in corners {
                 self.areas[*corner as usize] += double;
             }
-            let [a, double] = [a, double].map(Vec3::from);
-            volume += f64::from(a.dot(double));
-            area += f64::from(double.length());
+        }
+    }
+
+    /// All corners of a triangle have the same product with its area: a third of it is its part of the volume.
+    fn enclosed(&self) -> Enclosed {
+        let (mut volume, mut area) = (0.0_f64, 0.0_f64);
+        for (place, sum) in self.places.iter().zip(&self.areas) {
+            volume += f64::from(place.dot(*sum));
+            area += f64::from(sum.length());
         }
         Enclosed {
-            volume: self.outwards * volume / 6.0,
+            volume: self.outwards * volume / 18.0,
             outwards: self.outwards,
-            area: 0.5 * area,
+            area: area / 6.0,
         }
     }
 }
 
 /// The lanes of one axis, from one end of a strip to the other.
 pub(crate) fn between(from: &Lanes, to: &Lanes, part: f32) -> Lanes {
-    std::array::from_fn(|l| from[l] + part * (to[l] - from[l]))
+    let mut between = [0.0; LANES];
+    for l in 0..LANES {
+        between[l] = from[l] + part * (to[l] - from[l]);
+    }
+    between
 }

@@ -9,6 +9,7 @@ mod air_areas;
 mod barrier;
 mod chains;
 mod commit;
+mod each;
 mod elastic;
 mod packet;
 mod pentadiagonal;
@@ -35,6 +36,7 @@ pub(crate) use chains::{
 #[cfg(test)]
 pub(crate) use commit::MIN_MOVE;
 pub(crate) use commit::commit;
+pub(crate) use each::four;
 pub(crate) use elastic::{ElasticGrid, Force, Kick, kick};
 pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets_back, relax_packets_there, turned};
 pub(crate) use pentadiagonal::{

@@ -11,7 +11,7 @@
 
 use bevy::math::{Mat4, Vec4};
 
-use super::step_scale::StepScale;
+use super::{each::four, step_scale::StepScale};
 
 /// Added to `w_a + w_b` (1/kg): negligible, but it keeps a spring between two pins from dividing by zero.
 const MIN_SOFTNESS: f32 = 1.0e-18;
@@ -78,10 +78,10 @@ pub(crate) fn relax_packets_back(
 /// Moves the ends of a packet's springs. Returns what they pull with: what moves their ends over inverse mass and length (kg).
 #[inline(always)]
 fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Option<Vec4>) -> Vec4 {
-    let a = packet.from.map(|end| rows[end as usize]);
-    let b = packet.to.map(|end| rows[end as usize]);
+    let a = four(|at| rows[packet.from[at] as usize]);
+    let b = four(|at| rows[packet.to[at] as usize]);
     let offsets: [Vec4; SPRINGS] =
-        std::array::from_fn(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
+        four(|at| (b[at].place - a[at].place) + (b[at].moved - a[at].moved));
     let [x, y, z, _] = turned(offsets);
     let (weight_a, weight_b) = (weights(&a), weights(&b));
     let q = x * x + y * y + z * z;
@@ -95,7 +95,7 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
     let (mut softness, mut beyond) = (compliance * step_scale.inverse_weight, q - r2);
     if step_scale.kept < 1.0 {
         // As of a grid's springs; what a way opens by changes its square by twice its length times that.
-        let moved: [Vec4; SPRINGS] = std::array::from_fn(|at| b[at].moved - a[at].moved);
+        let moved: [Vec4; SPRINGS] = four(|at| b[at].moved - a[at].moved);
         let [dx, dy, dz, _] = turned(moved);
         let is_soft = packet.compliance.cmpgt(Vec4::ZERO);
         let kept = Vec4::select(is_soft, Vec4::splat(step_scale.kept), Vec4::ONE);
@@ -129,6 +129,6 @@ pub(crate) fn turned([a, b, c, d]: [Vec4; 4]) -> [Vec4; 4] {
 
 #[inline(always)]
 fn weights(rows: &[Row; SPRINGS]) -> Vec4 {
-    let [a, b, c, d] = rows.map(|row| row.place.w);
+    let [a, b, c, d] = four(|at| rows[at].place.w);
     Vec4::new(a, b, c, d)
 }

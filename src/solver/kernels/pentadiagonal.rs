@@ -4,6 +4,7 @@
 //! digit of a displacement is lost to the position. They are the right side of a pentadiagonal system `(M + s K) e = −s K p`,
 //! which is solved for what is added to the displacements, e: forwards with L, backwards with D and Lᵀ.
 
+use super::each::three;
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, X, Y, Z};
 
 /// x, y and z of eight particles.
@@ -118,8 +119,8 @@ pub(crate) fn chain_forward(
     out: &mut [Vec3Lanes],
 ) {
     let strip = out.len();
-    let [before, own, next] = moments.map(|of| &of[..strip]);
-    let [first, second] = solved.map(|of| &of[..strip]);
+    let [before, own, next] = three(|at| &moments[at][..strip]);
+    let (first, second) = (&solved[0][..strip], &solved[1][..strip]);
     let factors = &factors[..strip];
     for j in 0..strip {
         let [lower, lowest, _] = &factors[j];
@@ -141,8 +142,8 @@ pub(crate) fn chain_backward(
 ) {
     let strip = blocks.len();
     let (own, out) = (&own[..strip], &mut out[..strip]);
-    let [first, second] = solved.map(|of| &of[..strip]);
-    let [upper, uppermost] = factors.map(|of| &of[..strip]);
+    let (first, second) = (&solved[0][..strip], &solved[1][..strip]);
+    let (upper, uppermost) = (&factors[0][..strip], &factors[1][..strip]);
     for (j, block) in blocks.iter_mut().enumerate() {
         let view = block.view_mut();
         let (inverse, upper, uppermost) = (&own[j][2], &upper[j][0], &uppermost[j][1]);
@@ -254,7 +255,10 @@ pub(crate) fn chain_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: 
 pub(crate) fn chain_finish(columns: &[Vec3Lanes], strip: usize, rows: &mut [Block]) {
     for j in 0..strip {
         for axis in 0..3 {
-            let of_columns = std::array::from_fn(|lane| columns[lane * strip + j][axis]);
+            let mut of_columns = [[0.0; LANES]; LANES];
+            for (lane, of_column) in of_columns.iter_mut().enumerate() {
+                *of_column = columns[lane * strip + j][axis];
+            }
             let of_rows = transpose(&of_columns);
             for (blocks, of_row) in rows.chunks_exact_mut(strip).zip(&of_rows) {
                 let view = blocks[j].view_mut();

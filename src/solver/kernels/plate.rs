@@ -6,7 +6,10 @@
 //! corners by it, with these signs reversed. Three stages follow each other down the rows: positions, moments, forces.
 //! Data between the stages stays in the caches next to the core.
 
-use super::pentadiagonal::{MIN_MOVE, MOVES, PLACES, Vec3Lanes, flush};
+use super::{
+    each::three,
+    pentadiagonal::{MIN_MOVE, MOVES, PLACES, Vec3Lanes, flush},
+};
 use crate::cloth::{Block, LANES, Lanes, W};
 
 /// Blocks on either side of a row that repeat its other end, so that each block has its neighbours beside it.
@@ -27,13 +30,21 @@ pub(crate) type Stiffness = [Lanes; 3];
 /// Each lane's left neighbour, in the lane before.
 #[inline(always)]
 fn to_right<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
-    from.map(|from| std::array::from_fn(|l| if l == 0 { 0.0 } else { from[l - 1] }))
+    let mut to = [[0.0; LANES]; N];
+    for (to, from) in to.iter_mut().zip(from) {
+        to[1..].copy_from_slice(&from[..LANES - 1]);
+    }
+    to
 }
 
 /// Each lane's right neighbour, in the lane after.
 #[inline(always)]
 fn to_left<const N: usize>(from: &[Lanes; N]) -> [Lanes; N] {
-    from.map(|from| std::array::from_fn(|l| if l + 1 == LANES { 0.0 } else { from[l + 1] }))
+    let mut to = [[0.0; LANES]; N];
+    for (to, from) in to.iter_mut().zip(from) {
+        to[..LANES - 1].copy_from_slice(&from[1..]);
+    }
+    to
 }
 
 /// Where a row's particles will be after this part of their displacements, seen from `origin`: next to the cloth, so that no digit
@@ -132,7 +143,7 @@ fn pushed(
 #[inline(always)]
 pub(crate) fn plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]) {
     let strip = row.len();
-    let [above, own, below] = moments.map(|of| &of[..strip + 2 * EDGE]);
+    let [above, own, below] = three(|at| &moments[at][..strip + 2 * EDGE]);
     for (j, block) in row.iter_mut().enumerate() {
         let (left, at, right) = (j, j + 1, j + 2);
         let view = block.view_mut();

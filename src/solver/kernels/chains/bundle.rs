@@ -11,6 +11,7 @@ use super::link::{HOLD, clamped, terms_at};
 use crate::{
     cloth::{LANES, Lanes, Spring},
     solver::kernels::{
+        each::three,
         packet::{Row, turned},
         step_scale::StepScale,
     },
@@ -121,10 +122,10 @@ impl Particles {
 /// Eight vectors of these coordinates, and 0.
 #[inline(always)]
 fn vectors(coordinates: &[Lanes; 3]) -> [Vec4; LANES] {
-    let of = |from: usize| {
-        let [x, y, z] = [0, 1, 2].map(|axis| Vec4::from_slice(&coordinates[axis][from..from + 4]));
-        turned([x, y, z, Vec4::ZERO])
-    };
+    let [x, y, z] = coordinates;
+    let four =
+        |of: &Lanes, from: usize| Vec4::new(of[from], of[from + 1], of[from + 2], of[from + 3]);
+    let of = |from: usize| turned([four(x, from), four(y, from), four(z, from), Vec4::ZERO]);
     let ([a, b, c, d], [e, f, g, h]) = (of(0), of(4));
     [a, b, c, d, e, f, g, h]
 }
@@ -164,8 +165,8 @@ fn forward<const DAMPED_OR_STIFFER: bool>(
             ..Solved::NONE
         };
         for l in 0..LANES {
-            let moved = [0, 1, 2].map(|axis| b.moved[axis][l] - a.moved[axis][l]);
-            let [x, y, z] = [0, 1, 2].map(|axis| {
+            let moved = three(|axis| b.moved[axis][l] - a.moved[axis][l]);
+            let [x, y, z] = three(|axis| {
                 let span = (b.place[axis][l] - a.place[axis][l]) + moved[axis];
                 clamped(span * step.inverse_rest[l])
             });

@@ -15,7 +15,10 @@ use super::{
     beside::Chains,
     link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
+use crate::{
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
+    solver::kernels::each::three,
+};
 
 /// Multipliers of springs that have not pulled.
 const NONE: Lanes = [0.0; LANES];
@@ -71,7 +74,7 @@ fn substitute<const CROSSES: bool>(b: &mut View, link: &mut Link, behind: &mut B
     for l in 0..LANES {
         let l = if CROSSES { LANES - 1 - l } else { l };
         let multiplier = link.right[l] - behind.given[l];
-        let [x, y, z] = [0, 1, 2].map(|axis| link.span[axis][l] * multiplier);
+        let [x, y, z] = three(|axis| link.span[axis][l] * multiplier);
         b[DX + l] += b[W + l] * (x - behind.pull[0][l]);
         b[DY + l] += b[W + l] * (y - behind.pull[1][l]);
         b[DZ + l] += b[W + l] * (z - behind.pull[2][l]);

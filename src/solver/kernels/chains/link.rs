@@ -1,8 +1,8 @@
 //! One spring of a chain, in the system of equations of all springs of that chain.
 
 use crate::{
-    cloth::{ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
-    solver::kernels::step_scale::StepScale,
+    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, View, W, X},
+    solver::kernels::{each::three, step_scale::StepScale},
 };
 
 /// Keeps a spring between two pins from dividing by zero (1/kg).
@@ -206,7 +206,7 @@ pub(crate) fn damped(
     kept: f32,
     l: usize,
 ) -> f32 {
-    let [dx, dy, dz] = [DX, DY, DZ].map(|at| b[at + l] - a[at + l]);
+    let [dx, dy, dz] = three(|axis| b[DX + axis * LANES + l] - a[DX + axis * LANES + l]);
     let opening = x * dx + y * dy + z * dz;
     let opening = if a[W + l] + b[W + l] > 0.0 {
         opening
@@ -219,7 +219,8 @@ pub(crate) fn damped(
 /// The span of one lane's spring from the first to the second particle, in rest lengths.
 #[inline(always)]
 pub(crate) fn span(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
-    [(X, DX), (Y, DY), (Z, DZ)].map(|(at, moved)| {
+    three(|axis| {
+        let (at, moved) = (X + axis * LANES, DX + axis * LANES);
         clamped(((b[at + l] - a[at + l]) + (b[moved + l] - a[moved + l])) * inverse_rest)
     })
 }

@@ -14,7 +14,10 @@ use super::{
     ends::{BESIDE, Ends, GROUP, Reduced, Wide},
     link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W};
+use crate::{
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
+    solver::kernels::each::three,
+};
 
 /// Memory in which a group of rows is solved.
 #[derive(Debug, Clone)]
@@ -184,7 +187,7 @@ fn substitute(b: &mut View, link: &mut Link, spike: &Lanes, to_first: &Lanes, be
         let multiplier = link.right[l] - spike[l] * to_first[l] - behind.given[l];
         link.right[l] = multiplier;
         behind.given[l] = link.share[l] * multiplier;
-        let [x, y, z] = [0, 1, 2].map(|axis| link.span[axis][l] * multiplier);
+        let [x, y, z] = three(|axis| link.span[axis][l] * multiplier);
         b[DX + l] += b[W + l] * (x - behind.pull[0][l]);
         b[DY + l] += b[W + l] * (y - behind.pull[1][l]);
         b[DZ + l] += b[W + l] * (z - behind.pull[2][l]);
@@ -215,7 +218,7 @@ fn pull_row(
     let last = row.len() - 1;
     let multiplier = lanes(&system.right, at);
     let mut behind = Behind::NONE;
-    behind.pull = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at));
+    behind.pull = three(|axis| lanes(&ends.pull[axis], at));
     links[last].right = multiplier;
     let shares = links[last].share.iter().zip(&multiplier);
     for (given, (share, multiplier)) in behind.given.iter_mut().zip(shares) {
@@ -226,7 +229,7 @@ fn pull_row(
         let b = row[j + 1].view_mut();
         substitute(b, &mut links[j], &spikes[j], &to_first, &mut behind);
     }
-    let before = [0, 1, 2].map(|axis| lanes(&ends.pull[axis], at - 1));
+    let before = three(|axis| lanes(&ends.pull[axis], at - 1));
     pull_first(row[0].view_mut(), before.each_ref(), &behind.pull);
 }
 
