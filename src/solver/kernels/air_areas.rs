@@ -101,20 +101,13 @@ impl Triangles {
     /// Those of a surface.
     pub fn new(surface: &Surface) -> Self {
         let places = surface.rest_positions();
+        let origin = places.first().copied().unwrap_or_default();
         let mut triangles = Self {
             corners: surface.triangles().to_vec(),
             outwards: 1.0,
-            places: vec![Vec3A::ZERO; places.len()],
+            places: places.iter().map(|at| (*at - origin).into()).collect(),
             areas: vec![Vec3A::ZERO; places.len()],
         };
-        if let [origin, ..] = *places {
-            let from_first = places.iter().map(|place| Vec3A::from(*place - origin));
-            triangles
-                .places
-                .iter_mut()
-                .zip(from_first)
-                .for_each(|(known, place)| *known = place);
-        }
         triangles.add_up();
         if triangles.enclosed().volume < 0.0 {
             triangles.outwards = -1.0;

@@ -2,6 +2,8 @@
 //!
 //! No operation is fused or reordered from lane to lane, so every instruction set gives the same bits.
 //!
+//! A kernel calls only what is inlined in any build profile: short arrays are made by [`each`], not by `array::map`.
+//!
 //! A kernel imports no caller. [`Kernels`] is the table of all of them, compiled for one instruction set.
 
 mod air;

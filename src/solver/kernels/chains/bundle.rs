@@ -123,9 +123,9 @@ impl Particles {
 #[inline(always)]
 fn vectors(coordinates: &[Lanes; 3]) -> [Vec4; LANES] {
     let [x, y, z] = coordinates;
-    let four =
+    let half =
         |of: &Lanes, from: usize| Vec4::new(of[from], of[from + 1], of[from + 2], of[from + 3]);
-    let of = |from: usize| turned([four(x, from), four(y, from), four(z, from), Vec4::ZERO]);
+    let of = |from: usize| turned([half(x, from), half(y, from), half(z, from), Vec4::ZERO]);
     let ([a, b, c, d], [e, f, g, h]) = (of(0), of(4));
     [a, b, c, d, e, f, g, h]
 }
