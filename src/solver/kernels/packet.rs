@@ -93,18 +93,22 @@ fn relax(rows: &mut [Row], packet: &Packet, step_scale: &StepScale, pulled: Opti
         compliance = Vec4::select(is_stiff, stiffer.compliance * compliance, compliance);
     }
     let (mut softness, mut beyond) = (compliance * step_scale.inverse_weight, q - r2);
+    let scale = 1.5 * q + 0.5 * r2;
     if step_scale.kept < 1.0 {
-        // As of a grid's springs; what a way opens by changes its square by twice its length times that.
+        // The same as a grid's springs do: the change of length is measured like the stretch, against the length at the start.
         let moved: [Vec4; SPRINGS] = four(|at| b[at].moved - a[at].moved);
         let [dx, dy, dz, _] = turned(moved);
+        let (sx, sy, sz) = (x - dx, y - dy, z - dz);
+        let start = sx * sx + sy * sy + sz * sz;
+        let longer = (x + sx) * dx + (y + sy) * dy + (z + sz) * dz;
+        let opening = longer * (scale / (1.5 * q + 0.5 * start + MIN_SOFTNESS));
         let is_soft = packet.compliance.cmpgt(Vec4::ZERO);
         let kept = Vec4::select(is_soft, Vec4::splat(step_scale.kept), Vec4::ONE);
         softness *= kept;
-        beyond = kept * beyond + (1.0 - kept) * 2.0 * (x * dx + y * dy + z * dz);
+        beyond = kept * beyond + (1.0 - kept) * opening;
     }
     let softness = softness + MIN_SOFTNESS;
     let weight = weight_a + weight_b + softness;
-    let scale = 1.5 * q + 0.5 * r2;
     if let Some(pulled) = pulled {
         beyond -= softness * pulled * scale;
     }

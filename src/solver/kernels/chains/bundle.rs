@@ -7,7 +7,7 @@
 
 use bevy::math::Vec4;
 
-use super::link::{HOLD, clamped, terms_at};
+use super::link::{HOLD, clamped, opening, terms_at};
 use crate::{
     cloth::{LANES, Lanes, Spring},
     solver::kernels::{
@@ -165,9 +165,9 @@ fn forward<const DAMPED_OR_STIFFER: bool>(
             ..Solved::NONE
         };
         for l in 0..LANES {
-            let moved = three(|axis| b.moved[axis][l] - a.moved[axis][l]);
             let [x, y, z] = three(|axis| {
-                let span = (b.place[axis][l] - a.place[axis][l]) + moved[axis];
+                let moved = b.moved[axis][l] - a.moved[axis][l];
+                let span = (b.place[axis][l] - a.place[axis][l]) + moved;
                 clamped(span * step.inverse_rest[l])
             });
             let both = a.weight[l] + b.weight[l];
@@ -187,8 +187,10 @@ fn forward<const DAMPED_OR_STIFFER: bool>(
             let (hold, rest) = (step.hold[l], step.rest[l]);
             let [diagonal, right] = terms_at([x, y, z], both, softness, hold, rest, squares);
             let right = if DAMPED_OR_STIFFER {
-                // As of a grid's springs.
-                let opening = x * moved[0] + y * moved[1] + z * moved[2];
+                // The same as a grid's springs do.
+                let moved =
+                    three(|axis| (b.moved[axis][l] - a.moved[axis][l]) * step.inverse_rest[l]);
+                let opening = opening([x, y, z], moved, rest);
                 let opening = if both > 0.0 { opening } else { 0.0 };
                 kept * right - (1.0 - kept) * opening
             } else {

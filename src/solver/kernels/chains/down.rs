@@ -45,7 +45,7 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
         };
         let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest);
         let right = if DAMPED {
-            damped(right, [a, b], [x, y, z], springs.kept, l)
+            damped(right, [a, b], [x, y, z], springs, l)
         } else if AGAIN {
             after(right, [x, y, z], softness, pulled[l])
         } else {

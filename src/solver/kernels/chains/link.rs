@@ -195,6 +195,19 @@ pub(crate) fn terms_at(
     [weight * p + (soft + hold), right]
 }
 
+/// The stretch of a spring in a sub-step, times its length at the end (m): the right side of [`terms`] against the length at the start.
+/// It is 0 where the spring only turns. `end` is its span at the end, `moved` how far that has moved (rest lengths): small, so that its
+/// rounding is, too.
+#[inline(always)]
+pub(crate) fn opening(end: [f32; 3], moved: [f32; 3], rest: f32) -> f32 {
+    let moved = three(|axis| clamped(moved[axis]));
+    let start = three(|axis| end[axis] - moved[axis]);
+    let twice = three(|axis| end[axis] + start[axis]);
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (p, square, longer) = (dot(end, end), dot(start, start), dot(twice, moved));
+    rest * p * (longer / (1.5 * p + 0.5 * square + HOLD))
+}
+
 /// The right side of one lane's spring with damping along it: a force of τ/α times the speed of its stretch, `C − C₀` in a sub-step,
 /// makes `C + (τ/Δt)(C − C₀)` of C in its equation, which is divided by 1 + τ/Δt = 1/κ: `κ C + (1 − κ)(C − C₀)`, with a softness
 /// of κ α/(c Δt²).
@@ -202,12 +215,16 @@ pub(crate) fn terms_at(
 pub(crate) fn damped(
     right: f32,
     [a, b]: [&View; 2],
-    [x, y, z]: [f32; 3],
-    kept: f32,
+    span: [f32; 3],
+    springs: &SpringBand,
     l: usize,
 ) -> f32 {
-    let [dx, dy, dz] = three(|axis| b[DX + axis * LANES + l] - a[DX + axis * LANES + l]);
-    let opening = x * dx + y * dy + z * dz;
+    let moved = three(|axis| {
+        let at = DX + axis * LANES + l;
+        (b[at] - a[at]) * springs.inverse_rest
+    });
+    let opening = opening(span, moved, springs.rest);
+    let kept = springs.kept;
     let opening = if a[W + l] + b[W + l] > 0.0 {
         opening
     } else {
@@ -247,4 +264,43 @@ pub(crate) fn measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut 
 #[inline(always)]
 pub(crate) fn after(right: f32, [x, y, z]: [f32; 3], softness: f32, pulled: f32) -> f32 {
     right - softness * (x * x + y * y + z * z) * pulled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the change of length in f64, times the length: by the part ε²/4 off at a stretch of ε, as the stretch itself is, and of its
+    /// sign however far apart both lengths are. In the first case the spring only turns.
+    #[test]
+    fn what_opens_is_a_change_of_length() {
+        let cases: [([f32; 3], [f32; 3]); 8] = [
+            ([0.6, 0.8, 0.0], [-0.8, 0.6, 0.0]),
+            ([1.05, 0.0, 0.0], [0.0, 1.0, 0.0]),
+            ([0.0, 0.9, 0.1], [0.9, 0.0, -0.2]),
+            ([1.0, 0.0, 0.0], [3.0, 4.0, 0.0]),
+            ([3.0, 4.0, 0.0], [1.0, 0.0, 0.0]),
+            ([FARTHEST, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+            ([1.0, 0.0, 0.0], [-FARTHEST, FARTHEST, FARTHEST]),
+            ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        ];
+        for (end, start) in cases {
+            let moved = three(|axis| end[axis] - start[axis]);
+            let found = f64::from(opening(end, moved, 0.5));
+            let length = |of: [f32; 3]| of.map(|of| f64::from(of).powi(2)).iter().sum::<f64>();
+            let [end, start] = [end, start].map(|of| length(of).sqrt());
+            let truth = 0.5 * end * (end - start);
+            let stretch = (end / start.max(1.0e-9) - 1.0).abs();
+            // Beside it the rounding of squares.
+            let rounding = 4.0e-7 * (end * end + start * start);
+            if stretch < 0.2 {
+                let allowed = 0.25 * stretch * stretch * truth.abs() + rounding;
+                assert!((found - truth).abs() <= allowed, "{found} {truth}");
+            }
+            assert!(
+                found * truth >= 0.0 && found.abs() <= 2.0 * end * end + rounding,
+                "{found} {truth}"
+            );
+        }
+    }
 }
