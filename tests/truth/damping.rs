@@ -69,13 +69,13 @@ fn grid() -> Surface {
     Surface::of_grid(&grid.expect("a valid grid"))
 }
 
-/// A mesh.
+/// The surface of a mesh.
 fn mesh(mesh: &TriangleMesh) -> Surface {
     Surface::of_mesh(mesh, 1.0e-5, Vec3::ONE).expect("a surface")
 }
 
-/// What is stretched by 5 % and let go in free flight.
-fn flying(surface: &Surface, stretch_damping: f32) -> (ClothParticles, Solver) {
+/// A cloth in free flight, with its lengths times `stretched`.
+fn flying(surface: &Surface, stretched: f32, stretch_damping: f32) -> (ClothParticles, Solver) {
     let material = ClothMaterial {
         stretch_damping,
         ..threads(COMPLIANCE, 2.0 * COMPLIANCE)
@@ -84,7 +84,7 @@ fn flying(surface: &Surface, stretch_damping: f32) -> (ClothParticles, Solver) {
     for index in 0..particles.len() {
         let place = particles.position(index).expect("it exists");
         particles
-            .set_position(index, 1.05 * place)
+            .set_position(index, stretched * place)
             .and_then(|()| particles.set_velocity(index, Vec3::new(1.0, 2.0, -0.5)))
             .expect("it exists");
     }
@@ -99,7 +99,7 @@ fn flying(surface: &Surface, stretch_damping: f32) -> (ClothParticles, Solver) {
 fn it_takes_no_momentum() {
     for surface in [grid(), mesh(&meshes::irregular(0.8, 0.8, 0.1, 0.3))] {
         let bouncing = |stretch_damping: f32| {
-            let (mut particles, mut solver) = flying(&surface, stretch_damping);
+            let (mut particles, mut solver) = flying(&surface, 1.05, stretch_damping);
             let masses: Vec<f32> = particles.inverse_masses().map(f32::recip).collect();
             for _ in 0..32 {
                 solver.advance(&mut particles, TickStep::default(), &[], |_, _| false);
@@ -215,15 +215,12 @@ fn what_turns_is_not_damped() {
     };
     for surface in [grid(), mesh(&meshes::regular(9, 9, 0.1)), mesh(&triangle)] {
         let size = |stretch_damping: f32| {
-            let (mut particles, mut solver) = flying(&surface, stretch_damping);
+            let (mut particles, mut solver) = flying(&surface, 1.0, stretch_damping);
             let positions: Vec<Vec3> = particles.positions().collect();
             let middle = positions.iter().sum::<Vec3>() / positions.len() as f32;
             for (index, place) in positions.iter().enumerate() {
                 let velocity = SPIN * Vec3::Z.cross(*place - middle);
-                particles
-                    .set_position(index, middle + (*place - middle) / 1.05)
-                    .and_then(|()| particles.set_velocity(index, velocity / 1.05))
-                    .expect("it exists");
+                particles.set_velocity(index, velocity).expect("it exists");
             }
             let step = TickStep {
                 substeps: 80,
