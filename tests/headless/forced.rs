@@ -244,17 +244,18 @@ fn passes(seed: u64, is_spinning: bool) -> bool {
     is_through
 }
 
-/// Sticks that fit between the threads seldom get through: before colliders that stretch a cloth made it take more sub-steps, more than
-/// half did.
+/// Sticks that fit between the threads do not get through: of 1,000 none did when this was written. One in a hundred may, as each is a
+/// fight of springs with edges.
 #[test]
-fn sticks_seldom_pass() {
-    let count = if is_long() { 300 } else { 30 };
+fn sticks_hardly_ever_pass() {
+    let count = if is_long() { 500 } else { 30 };
     for is_spinning in [false, true] {
-        let passed = (0..count).filter(|&seed| passes(seed, is_spinning)).count();
-        println!("{passed} of {count} pass, spinning {is_spinning}");
+        let passing = (0..count).filter(|&seed| passes(seed, is_spinning));
+        let passing: Vec<u64> = passing.collect();
+        println!("{passing:?} of {count} pass, spinning {is_spinning}");
         assert!(
-            passed as u64 <= count / 10,
-            "{passed} of {count}, spinning {is_spinning}"
+            passing.len() as u64 <= count / 100,
+            "{passing:?} of {count}, spinning {is_spinning}"
         );
     }
 }

@@ -15,6 +15,8 @@ pub(crate) const DEEPEST: f32 = 0.5;
 
 /// Above this sine of the angle between them, an edge is steep to a triangle's plane.
 pub(crate) const STEEP: f32 = 0.5;
+/// Above this cosine, the outward direction says on which side of a triangle the shape lies.
+const CLEAR: f32 = 0.3;
 /// Above this sine, a triangle whose normal points into the shape at an edge is on the shape's far side.
 pub(crate) const FAR_SIDE: f32 = 0.1;
 
@@ -26,6 +28,8 @@ pub(crate) struct EdgeContact {
     pub normal: Vec3,
     /// Distance that its point has to move (m).
     pub depth: f32,
+    /// Whether the triangle lies below the shape: the normal that its corners give points into it. `None` where the edge is beside it.
+    pub is_below: Option<bool>,
 }
 
 /// A triangle in the shape's frame, tested against edges one by one.
@@ -37,10 +41,11 @@ pub(crate) struct EdgeTest<'a> {
     /// The longest side (m).
     pub longest: f32,
     pub middle: Vec3,
-    /// Outward direction of the shape at the triangle's middle, if known.
-    pub outside: Option<Vec3>,
-    /// The contact with the nearest edge, or with the deepest one through it.
-    pub found: Option<EdgeContact>,
+    /// Whether the triangle lies below the shape, if that is known.
+    pub is_below: Option<bool>,
+    /// The contacts with the nearest edge, or with the deepest one through it, if the triangle lies above the shape, and if it lies
+    /// below.
+    found: [Option<EdgeContact>; 2],
 }
 
 impl<'a> EdgeTest<'a> {
@@ -60,8 +65,8 @@ impl<'a> EdgeTest<'a> {
             reach,
             longest: longest.sqrt(),
             middle: (a + b + c) / 3.0,
-            outside: None,
-            found: None,
+            is_below: None,
+            found: [None; 2],
         })
     }
 
@@ -81,23 +86,56 @@ impl<'a> EdgeTest<'a> {
         if is_on_one_side && beyond || self.is_beyond(edge) {
             return;
         }
-        let above = if beyond {
-            None
-        } else {
-            self.over([from, to], edge, near)
+        let over = match clip([from, to]) {
+            Some(ends) if !beyond => self.over(ends, edge, near),
+            _ => [None; 2],
         };
         let deepest = DEEPEST * self.longest;
         let beside = self.plane.beside([from, to], edge, near, deepest);
-        // Through it: the shorter way out counts.
-        let contact = match (above, beside) {
-            (Some(above), Some(beside)) if beside.depth < above.depth => Some(beside),
-            (Some(above), _) => Some(above),
-            (None, beside) => beside,
+        for (found, over) in self.found.iter_mut().zip(over) {
+            // Through it: the shorter way out counts.
+            let contact = match (over, beside) {
+                (Some(over), Some(beside)) if beside.depth < over.depth => Some(beside),
+                (Some(over), _) => Some(over),
+                (None, beside) => beside,
+            };
+            if let Some(contact) = contact
+                && found.is_none_or(|found| contact.depth > found.depth)
+            {
+                *found = Some(contact);
+            }
+        }
+    }
+
+    /// The contact on the side of the shape on which the triangle lies. Unless that is known, the outward direction at the triangle's
+    /// middle says it. Where that is unclear, the shorter way out does.
+    pub fn contact(&self) -> Option<EdgeContact> {
+        let [above, below] = self.found;
+        let is_over =
+            |contact: &Option<EdgeContact>| contact.is_some_and(|of| of.is_below.is_some());
+        if !is_over(&above) && !is_over(&below) {
+            return below;
+        }
+        let is_below = match self.is_below {
+            Some(known) => known,
+            None => self.lies_below(),
         };
-        if let Some(contact) = contact
-            && self.found.is_none_or(|found| contact.depth > found.depth)
-        {
-            self.found = Some(contact);
+        self.found[usize::from(is_below)]
+    }
+
+    fn lies_below(&self) -> bool {
+        let outside = (self.shape)
+            .nearest(Isometry3d::IDENTITY, self.middle)
+            .normal;
+        let facing = self.plane.normal.dot(outside);
+        let depth = |side: usize| {
+            let over = self.found[side].filter(|contact| contact.is_below.is_some());
+            over.map_or(f32::INFINITY, |contact| contact.depth)
+        };
+        if facing.abs() > CLEAR || depth(0) == depth(1) {
+            facing.is_sign_negative()
+        } else {
+            depth(1) < depth(0)
         }
     }
 
@@ -110,37 +148,25 @@ impl<'a> EdgeTest<'a> {
         is_beyond && matches!(self.shape, ColliderShape::Geometry(_))
     }
 
-    /// The contact of an edge that touches the triangle, or passes through it, along the triangle's normal.
+    /// The contacts of an edge that touches the triangle, or passes through it, along the triangle's normal: if the triangle lies above
+    /// the shape, and if it lies below.
     #[inline]
-    fn over(&mut self, ends: [Placed; 2], edge: &SharpEdge, near: f32) -> Option<EdgeContact> {
-        let [from, to] = clip(ends)?;
+    fn over(
+        &self,
+        [from, to]: [Placed; 2],
+        edge: &SharpEdge,
+        near: f32,
+    ) -> [Option<EdgeContact>; 2] {
         let deepest = DEEPEST * self.longest;
         let normal = self.plane.normal;
-        // The shape's far side has no contact, nor does an edge too far away.
-        let may_touch = |sign: f32| {
+        let contact = |sign: f32| {
             let height = (from.height * sign).max(to.height * sign);
+            // The shape's far side has no contact, nor does an edge too far away.
             let is_far_side = normal.dot(edge.outward) * sign < -FAR_SIDE;
-            !is_far_side && height <= deepest && height + near > 0.0
+            let touches = !is_far_side && height <= deepest && height + near > 0.0;
+            touches.then(|| over([from, to], normal * sign, sign, near))
         };
-        let may_touch = [may_touch(1.0), may_touch(-1.0)];
-        if may_touch == [false; 2] {
-            return None;
-        }
-        let outside = *self.outside.get_or_insert_with(|| {
-            let shape = self.shape;
-            shape.nearest(Isometry3d::IDENTITY, self.middle).normal
-        });
-        // The side of the triangle on which the shape lies: by the outward direction there, or by the edge where that
-        // is unclear.
-        let facing = normal.dot(outside);
-        let facing = if facing.abs() > 0.3 || edge.outward == Vec3::ZERO {
-            facing
-        } else {
-            normal.dot(edge.outward)
-        };
-        let is_below = facing.is_sign_negative();
-        let sign = if is_below { -1.0 } else { 1.0 };
-        may_touch[usize::from(is_below)].then(|| over([from, to], normal * sign, sign, near))
+        [contact(1.0), contact(-1.0)]
     }
 }
 
@@ -163,6 +189,7 @@ fn over([from, to]: [Placed; 2], normal: Vec3, sign: f32, near: f32) -> EdgeCont
         weights: within(from.weights.lerp(to.weights, part)),
         normal,
         depth: first.max(last) + near,
+        is_below: Some(sign < 0.0),
     }
 }
 
@@ -270,6 +297,7 @@ impl Plane {
             weights: within(crossing + change * leaves),
             normal: outwards,
             depth,
+            is_below: None,
         })
     }
 }

@@ -18,10 +18,6 @@ use crate::{
 /// Number of edges remembered for a triangle; with more, none is.
 const MAX_EDGES: usize = 8;
 
-/// A shape's outward direction is reused while a triangle's middle has moved less in the tick than this fraction of its
-/// reach. Only its side of the triangle matters.
-const SAME_SIDE: f32 = 0.1;
-
 /// Below this fraction of the slack, clearance counts as none, and for this many sub-steps it is then not measured.
 const HARDLY: f32 = 0.02;
 const RESTS: u32 = 12;
@@ -82,8 +78,26 @@ pub(crate) struct Nearness {
     /// lᵢⱼ²) from the axis, and the last sum is at most l²/3. Particles keep the corners at R + r, with their radius r. So
     /// all of it is outside of R if 2 R r ≥ l²/3; on a cone, with the radius beside it.
     pub smooth: f32,
-    /// The current tick.
+    /// The current tick, and the number of the sub-step in it.
     pub tick: u32,
+    pub substep: u32,
+}
+
+/// On which side of a shape a triangle lay when it touched that. Cloth that is pressed against a thin shape may get through it by more
+/// than its half, and then is nearer to its other side.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    is_below: bool,
+    tick: u32,
+    substep: u32,
+}
+
+impl Side {
+    /// The side, if that was no more than a sub-step ago.
+    fn lately(self, near: &Nearness) -> Option<bool> {
+        let is_recent = self.tick == near.tick && near.substep <= self.substep + 1;
+        is_recent.then_some(self.is_below)
+    }
 }
 
 /// An edge near a triangle.
@@ -108,10 +122,7 @@ pub(crate) struct KnownFace {
     /// The edges that may touch it while its corners are within the slack of the second, unless there are too many.
     edges: [KnownEdge; MAX_EDGES],
     count: usize,
-    /// Outward direction of the shape at its middle (m), and the tick.
-    outside: Vec3,
-    middle: Vec3,
-    tick: u32,
+    side: Option<Side>,
 }
 
 impl KnownFace {
@@ -125,9 +136,7 @@ impl KnownFace {
             rests: 0,
         }; MAX_EDGES],
         count: 0,
-        outside: Vec3::Y,
-        middle: Vec3::NAN,
-        tick: 0,
+        side: None,
     };
 
     /// Displacement of the corners since the test (m); NaN before the first test.
@@ -146,7 +155,11 @@ impl KnownFace {
         moved: f32,
     ) -> Option<EdgeContact> {
         let Nearness {
-            reach, slack, tick, ..
+            reach,
+            slack,
+            tick,
+            substep,
+            ..
         } = near;
         self.clearance = 0.0;
         let mut test = EdgeTest::new(shape, corners, reach)?;
@@ -161,8 +174,7 @@ impl KnownFace {
         } else {
             self.list(&test, corners, near);
         }
-        let is_same = tick == self.tick && test.middle.distance(self.middle) <= SAME_SIDE * reach;
-        test.outside = is_same.then_some(self.outside);
+        test.is_below = self.side.and_then(|side| side.lately(&near));
         if self.count <= MAX_EDGES {
             // Edges that are not listed are at least the slack away from the positions at the listing.
             let strayed = if is_known { strayed } else { 0.0 };
@@ -177,12 +189,13 @@ impl KnownFace {
             });
             self.clearance = clearance.left();
         }
-        if let Some(outside) = test.outside
-            && !is_same
-        {
-            (self.outside, self.middle, self.tick) = (outside, test.middle, tick);
-        }
-        test.found
+        let contact = test.contact()?;
+        self.side = contact.is_below.map(|is_below| Side {
+            is_below,
+            tick,
+            substep,
+        });
+        Some(contact)
     }
 
     /// Tests the listed edges that may touch. Returns the displacement of the triangle's corners before any can (m).

@@ -66,6 +66,7 @@ impl<'a> EdgeMotion<'a> {
                 slack: reach.max(SLACK * spacing),
                 smooth: (SIDE * spacing).powi(2) / (6.0 * settings.particle_radius),
                 tick,
+                substep: pushing.motion.substep.index,
             },
             to_local: pushing.motion.pose.inverse().into(),
             push_out: pushing.lanes.push_out,
@@ -267,6 +268,7 @@ fn push_point(
         weights,
         normal,
         depth,
+        ..
     } = *contact;
     let normal = motion.of.pose.rotation * normal;
     let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);

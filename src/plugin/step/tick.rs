@@ -29,6 +29,9 @@ use crate::{
     solver::{LimitInputs, Stretch, SubStep, Substepping, TickStep},
 };
 
+/// Least distance at which edges are taken to touch, in spacings, where a tick is repeated for the depth of contact.
+const THIN: f32 = 0.1;
+
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(crate) struct IntegrateQuery {
@@ -249,16 +252,20 @@ impl IntegrateQueryItem<'_, '_> {
             detection, pins, ..
         } = &*self.scratch;
         let is_pulled = !pins.is_empty();
-        let is_forced = detection.touches().iter().any(|touch| {
+        let depths = detection.touches().iter().filter_map(|touch| {
             let moves = is_pulled || touch.collider.max_surface_travel(f32::INFINITY) > 0.0;
-            moves && touch.deepest > 0.0 && touch.collider.shape.has_edges()
+            (moves && touch.collider.shape.has_edges()).then_some(touch.deepest)
         });
+        let deepest = depths.fold(0.0, f32::max);
         // A force of its own draws embedded cloth out.
-        if !is_forced || detection.embedded() > 0.0 {
+        if deepest == 0.0 || detection.embedded() > 0.0 {
             return 0.0;
         }
         let given = stretch.material.max(step.material_stretch);
-        Substepping::for_contact(stretch.structural - given, step.substeps)
+        let radius = self.scratch.contact_settings.particle_radius;
+        let touching = radius.max(THIN * self.built.surface().spacing().longest);
+        let depths = deepest / touching;
+        Substepping::for_contact(stretch.structural - given, depths, step.substeps)
     }
 
     /// One way through the sub-steps.

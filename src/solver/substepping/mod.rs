@@ -24,7 +24,7 @@ const SLACKER: f32 = 0.75;
 const SLACK_TICKS: u32 = 30;
 const MOST_FOR_TAUT: u32 = 4;
 const MOST_FOR_LOAD: u32 = 8;
-const MOST_FOR_CONTACT: u32 = 8;
+const MOST_FOR_CONTACT: u32 = 16;
 
 /// A collider that leaves more stretch unsolved than this asks for more sub-steps. Chains that give way so far let through what
 /// is narrower than they are apart.
@@ -54,8 +54,9 @@ pub enum Substepping {
     /// - More where it is taut as a membrane, until ripples across its chains are resolved,
     ///   [`Stretch::ripple_substeps`].
     /// - More where a body lies on it, until it holds that body, [`Stretch::load_substeps`].
-    /// - More where something that moves forces it over a collider's edges, and so stretches it by far more than its
-    ///   material gives, [`Stretch::contact_substeps`]. That tick is repeated, before the game sees it.
+    /// - More where something that moves forces it over a collider's edges, so that it is stretched by far more than its
+    ///   material gives, or an edge goes deep into it in one sub-step, [`Stretch::contact_substeps`]. That tick is repeated, before the
+    ///   game sees it.
     #[default]
     Automatic,
     /// This number of sub-steps per tick, from 1 to 10,000.
@@ -91,16 +92,18 @@ impl Substepping {
         FOR_LOAD * (ratio * gravity * seconds * seconds / spacing).cbrt()
     }
 
-    /// Number of sub-steps in a tick that holds the chains together where a collider has left a stretch `unsolved` by
-    /// `substeps`: that falls about as their number to the power of −¾ (measured with sticks of 1 to 4 cm). 0 if that is
-    /// little.
-    pub(crate) fn for_contact(unsolved: f32, substeps: u32) -> f32 {
-        if unsolved > STRETCHED {
-            let times = 2.0 * unsolved / STRETCHED;
-            substeps as f32 * times * times.cbrt()
-        } else {
-            0.0
-        }
+    /// Number of sub-steps in a tick for a cloth that a collider forces over its edges. 0 if `substeps` were enough.
+    ///
+    /// The stretch that they left `unsolved` falls about as their number to the power of −¾ (measured with sticks of 1 to 4 cm).
+    /// The depth of contact before a push, `depths` times the distance at which edges touch, falls as their number. If it
+    /// is more than one, an edge is through a triangle as a sub-step ends.
+    pub(crate) fn for_contact(unsolved: f32, depths: f32, substeps: u32) -> f32 {
+        let for_stretch = match 2.0 * unsolved / STRETCHED {
+            twice if twice > 2.0 => twice * twice.cbrt(),
+            _ => 0.0,
+        };
+        let for_depth = if depths > 1.0 { depths } else { 0.0 };
+        substeps as f32 * f32::max(for_stretch, for_depth)
     }
 }
 

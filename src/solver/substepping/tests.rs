@@ -95,12 +95,12 @@ fn nothing_is_repeated_for_what_the_material_gives() {
     assert_eq!(control.substeps(PERCENT, 10), 10);
 }
 
-/// A tick in which a collider stretches the cloth is repeated once, with up to eight times the sub-steps; half a second
+/// A tick in which a collider stretches the cloth is repeated once, with up to sixteen times the sub-steps; half a second
 /// later the cloth takes as many as before. A fixed number stays.
 #[test]
 fn what_a_collider_stretches_is_done_again() {
     let struck = |unsolved: f32, substeps: u32| Stretch {
-        contact_substeps: Substepping::for_contact(unsolved, substeps),
+        contact_substeps: Substepping::for_contact(unsolved, 0.0, substeps),
         ..Stretch::default()
     };
     let automatic = Substepping::Automatic;
@@ -108,17 +108,20 @@ fn what_a_collider_stretches_is_done_again() {
     assert_eq!(control.substeps(automatic, 10), 10);
     assert_eq!(control.observe(automatic, struck(0.09, 10)), None);
     assert_eq!(control.substeps(automatic, 10), 10);
-    assert_eq!(control.observe(automatic, struck(2.0, 10)), Some(80));
-    assert_eq!(control.observe(automatic, struck(1.0, 80)), None);
+    assert_eq!(control.observe(automatic, struck(2.0, 10)), Some(160));
+    assert_eq!(control.observe(automatic, struck(1.0, 160)), None);
     for _ in 0..SLACK_TICKS {
-        assert_eq!(control.substeps(automatic, 10), 80);
-        assert_eq!(control.observe(automatic, struck(0.0, 80)), None);
+        assert_eq!(control.substeps(automatic, 10), 160);
+        assert_eq!(control.observe(automatic, struck(0.0, 160)), None);
     }
     assert_eq!(control.substeps(automatic, 10), 10);
     assert_eq!(control.substeps(Substepping::Fixed(7), 10), 7);
     let observed = control.observe(Substepping::Fixed(7), struck(2.0, 7));
     assert_eq!(observed, None);
-    assert_eq!(Substepping::for_contact(f32::NAN, 10), 0.0);
+    // So is one in which an edge goes deeper than it touches.
+    assert_eq!(Substepping::for_contact(0.0, 0.9, 10), 0.0);
+    assert_eq!(Substepping::for_contact(0.0, 3.0, 10), 30.0);
+    assert_eq!(Substepping::for_contact(f32::NAN, f32::NAN, 10), 0.0);
 }
 
 #[test]
