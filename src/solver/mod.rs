@@ -102,7 +102,7 @@ pub(crate) use envelope::LimitInputs;
 pub use kernels::SimdLevel;
 pub(crate) use motion::MotionConstraints;
 #[doc(hidden)]
-pub use rest::Rest;
+pub use rest::{Rest, RestRule};
 pub(crate) use seam::{Seam, SeamCloth, SeamPull};
 pub use settings::ClothSettings;
 pub use step::TimeOrder;

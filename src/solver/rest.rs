@@ -22,13 +22,27 @@ const PAUSE: f32 = 0.125;
 const REACH_OF_LAYERS: f32 = 5.0e-3;
 const PATIENCE_OF_LAYERS: f32 = 0.5;
 
+/// The same for cloth that trembles under a body, in diagonals of the cloth.
+const REACH_OF_CARRIERS: f32 = 1.0e-2;
+
 /// Where nothing swings, as there is no gravity (s).
 const WITHOUT_GRAVITY: f32 = 2.5;
+
+/// How a cloth at rest is expected to move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RestRule {
+    /// Not at all.
+    Free,
+    /// Its layers settle.
+    Layers,
+    /// It trembles under a body.
+    Carries,
+}
 
 /// Detects rest as an observer would see it. A cloth is at rest once no particle has moved by more than a thousandth of
 /// the cloth's diagonal, capped at 5 mm, for half a swing. That is the half period of a hanging sheet as long as the
 /// diagonal (1.3 s for 2.3 m on Earth), from 0.5 to 20 s. Speeds do not count: a cloth that trembles in place is at
-/// rest.
+/// rest. Cloth that lies on cloth, or carries a body, follows another [`RestRule`].
 #[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rest {
@@ -47,22 +61,24 @@ impl Rest {
         self.origin.is_valid()
     }
 
-    /// Takes the particles at the end of a tick of this many seconds. The cloth measures `diagonal` (m) at rest, is
-    /// under an `acceleration` (m/s²), and lies on cloth or not.
+    /// Takes the particles at the end of a tick of this many seconds. The cloth measures `diagonal` (m) at rest, and
+    /// is under an `acceleration` (m/s²).
     pub fn observe(
         &mut self,
         seconds: f32,
         particles: &ClothParticles,
         (diagonal, acceleration): (f32, f32),
-        lies_on_cloth: bool,
+        rule: RestRule,
     ) {
-        let (reach, patience) = if lies_on_cloth {
-            (REACH_OF_LAYERS, PATIENCE_OF_LAYERS)
-        } else if acceleration > 0.0 {
-            let half_swing = HALF_SWING * (diagonal / acceleration).sqrt();
-            ((REACH * diagonal).min(LARGEST_REACH), half_swing)
-        } else {
-            ((REACH * diagonal).min(LARGEST_REACH), WITHOUT_GRAVITY)
+        let patience = match rule {
+            RestRule::Layers => PATIENCE_OF_LAYERS,
+            _ if acceleration > 0.0 => HALF_SWING * (diagonal / acceleration).sqrt(),
+            _ => WITHOUT_GRAVITY,
+        };
+        let reach = match rule {
+            RestRule::Layers => REACH_OF_LAYERS,
+            RestRule::Carries => (REACH_OF_CARRIERS * diagonal).min(LARGEST_REACH),
+            RestRule::Free => (REACH * diagonal).min(LARGEST_REACH),
         };
         if self.wait > 0.0 {
             self.wait -= seconds;
@@ -144,7 +160,7 @@ mod tests {
         for tick in 0..ticks {
             let place = [Vec3::ZERO, Vec3::new(1.0, at(tick), 0.0)];
             let particles = ClothParticles::new(&place, &[1.0; 2]).expect("two particles");
-            rest.observe(TICK, &particles, (2.0, gravity), false);
+            rest.observe(TICK, &particles, (2.0, gravity), RestRule::Free);
         }
         rest.is_asleep()
     }
@@ -186,7 +202,7 @@ mod tests {
         let mut rest = Rest::default();
         let particles = ClothParticles::new(&[Vec3::ZERO], &[1.0]).expect("a particle");
         for _ in 0..64 {
-            rest.observe(TICK, &particles, (0.1, GRAVITY), false);
+            rest.observe(TICK, &particles, (0.1, GRAVITY), RestRule::Free);
         }
         assert!(rest.is_asleep() && rest.sleeps_as(&particles.clone()));
         let mut moved = particles.clone();
@@ -195,7 +211,7 @@ mod tests {
         rest.disturb();
         assert!(!rest.is_asleep() && !rest.sleeps_as(&particles));
         let nan = ClothParticles::default();
-        rest.observe(TICK, &nan, (0.1, GRAVITY), false);
+        rest.observe(TICK, &nan, (0.1, GRAVITY), RestRule::Free);
         assert!(!rest.is_asleep());
     }
 }

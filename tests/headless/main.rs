@@ -47,6 +47,7 @@ mod reflection;
 mod render_mesh;
 mod resolution;
 mod rest;
+mod resting_bodies;
 mod ropes;
 mod scene_files;
 mod scenes;

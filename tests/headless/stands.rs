@@ -12,7 +12,7 @@ const THICK: f32 = 0.004;
 const ABOVE: f32 = 2.1 * THICK;
 
 /// A cloth of a friction that lies on what is below it, at a pose.
-fn spawn_cloth(app: &mut App, pose: Transform, friction: f32, pins: Pins) -> Entity {
+pub fn spawn_cloth(app: &mut App, pose: Transform, friction: f32, pins: Pins) -> Entity {
     let cloth = (
         Cloth::new(31, 31, 0.04).lying().centred(),
         pins,
@@ -30,10 +30,10 @@ fn spawn_cloth(app: &mut App, pose: Transform, friction: f32, pins: Pins) -> Ent
 }
 
 /// What a test puts on a cloth: its collider, the height of its middle above its foot (m), and its mass.
-type Thing = (ClothCollider, f32, ClothBody);
+pub type Thing = (ClothCollider, f32, ClothBody);
 
 /// A thing whose foot is on a cloth at a place of the pose.
-fn spawn_on(app: &mut App, pose: Transform, (collider, height, body): Thing, x: f32) -> Entity {
+pub fn spawn_on(app: &mut App, pose: Transform, (collider, height, body): Thing, x: f32) -> Entity {
     let thing = (
         collider,
         body,
@@ -47,7 +47,7 @@ fn spawn_on(app: &mut App, pose: Transform, (collider, height, body): Thing, x: 
 }
 
 /// A block of a mass (kg) and a size (m).
-fn block(mass: f32, size: Vec3) -> Thing {
+pub fn block(mass: f32, size: Vec3) -> Thing {
     let of = |a: f32, b: f32| mass * (a * a + b * b) / 12.0;
     let inertia = Vec3::new(of(size.y, size.z), of(size.z, size.x), of(size.x, size.y));
     let collider = ClothCollider::cuboid(size.x, size.y, size.z);
@@ -55,7 +55,7 @@ fn block(mass: f32, size: Vec3) -> Thing {
 }
 
 /// A cup of a mass (kg), a radius and a height (m): a cylinder.
-fn cup(mass: f32, radius: f32, height: f32) -> Thing {
+pub fn cup(mass: f32, radius: f32, height: f32) -> Thing {
     let across = mass * (3.0 * radius * radius + height * height) / 12.0;
     let inertia = Vec3::new(across, mass * radius * radius / 2.0, across);
     let collider = ClothCollider::cylinder(radius, height);

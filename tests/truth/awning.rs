@@ -4,7 +4,7 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::ClothMaterial,
-    solver::{Rest, Substepping, TickStep},
+    solver::{Rest, RestRule, Substepping, TickStep},
 };
 use examples_shared::sheet::{GRAVITY, Sheet};
 
@@ -57,7 +57,7 @@ fn strips_and_awnings_sag_by_what_they_give_and_sleep() {
                 step.seconds,
                 &sheet.particles,
                 (diagonal, GRAVITY as f32),
-                false,
+                RestRule::Free,
             );
             passed += step.seconds;
             let middle = sheet.particles.position((rows / 2, columns / 2));

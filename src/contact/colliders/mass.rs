@@ -14,6 +14,8 @@ pub struct BodyMass {
     pub centre: Vec3,
     /// Projection of a push onto the free translation axes: the identity, unless translation is locked along some.
     pub free: Mat3,
+    /// Whether it has stayed in its place for a while, so that cloth that it lies on may sleep.
+    pub is_settled: bool,
 }
 
 impl BodyMass {
@@ -30,6 +32,7 @@ impl BodyMass {
             } else {
                 axes * self.free * axes.transpose()
             },
+            ..*self
         }
     }
 
@@ -39,8 +42,7 @@ impl BodyMass {
         Self {
             inverse_mass: self.inverse_mass * parts,
             inverse_inertia: self.inverse_inertia * parts,
-            centre: self.centre,
-            free: self.free,
+            ..*self
         }
     }
 }

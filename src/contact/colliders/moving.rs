@@ -66,6 +66,11 @@ impl MovingCollider {
         Isometry3d::new(place, rotation)
     }
 
+    /// Whether it is a body that has come to rest.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.body.is_some_and(|body| body.is_settled)
+    }
+
     fn start(&self) -> Vec3 {
         self.from.translation.into()
     }

@@ -50,6 +50,7 @@ fn table(mass: f32, inverse_inertia: Mat3) -> MovingCollider {
             inverse_inertia,
             centre: Vec3::ZERO,
             free: Mat3::IDENTITY,
+            is_settled: false,
         }),
         ..MovingCollider::still(shape, pose)
     }
@@ -162,6 +163,7 @@ fn a_mass_turns_with_its_frame() {
         inverse_inertia: Mat3::from_diagonal(Vec3::new(1.0, 2.0, 3.0)),
         centre: Vec3::X,
         free: Mat3::from_diagonal(Vec3::new(1.0, 0.0, 0.0)),
+        is_settled: true,
     };
     let turned = mass.turned(Quat::from_rotation_z(std::f32::consts::FRAC_PI_2));
     assert!(turned.centre.distance(Vec3::Y) < 1e-6);

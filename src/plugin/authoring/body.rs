@@ -20,7 +20,9 @@ use crate::{cloth::ClothError, contact::BodyMass};
 /// Where cloth lies on another collider, the body stands on that through the cloth, two particle radii above it and a
 /// little more, with the cloth's friction.
 ///
-/// A cloth that pushes a body does not sleep.
+/// Where a body has come to rest on a cloth, the cloth falls asleep, and holds the body where it is
+/// ([`ClothPush::is_held`]). A motion that is not gravity's wakes the cloth, if its force is more than a twentieth of the
+/// body's weight. A body that several cloths push keeps them awake, and so does one that is a child of another entity.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
@@ -50,6 +52,9 @@ pub struct ClothPush {
     pub velocity: Vec3,
     /// Change of its angular velocity (rad/s).
     pub angular_velocity: Vec3,
+    /// Whether a cloth that sleeps holds it where it is. The change of velocity is then minus the way that it went in the tick, by
+    /// the tick's length. The code that moves it may put it to sleep, and wakes it when this is false again.
+    pub is_held: bool,
 }
 
 impl Default for ClothBody {
@@ -121,6 +126,7 @@ impl ClothBody {
             inverse_inertia: inverse,
             centre: Vec3::ZERO,
             free: Mat3::IDENTITY,
+            is_settled: false,
         };
         let turned = body.turned(rotation * self.axes.normalize());
         let turns = Mat3::from_diagonal(self.free_rotation(Vec3::ONE));

@@ -3,6 +3,7 @@
 use bevy::{
     app::App,
     ecs::{
+        change_detection::DetectChanges,
         component::Component,
         entity::Entity,
         intern::Interned,
@@ -12,13 +13,18 @@ use bevy::{
         reflect::ReflectComponent,
         schedule::{IntoScheduleConfigs, ScheduleLabel},
         system::{Commands, Query},
+        world::Ref,
     },
     math::{BVec3, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::{GlobalTransform, Transform},
 };
 use bevy_rapier3d::{
-    dynamics::{LockedAxes, ReadMassProperties, RigidBody, Velocity},
-    plugin::PhysicsSet,
+    dynamics::{LockedAxes, RapierRigidBodyHandle, ReadMassProperties, RigidBody, Velocity},
+    plugin::{
+        PhysicsSet,
+        context::{RapierContextEntityLink, RapierRigidBodySet},
+    },
 };
 
 use crate::plugin::{
@@ -51,6 +57,8 @@ use crate::plugin::{
 /// carries a body. A body on hanging cloth rolls, but hardly slides: the particles hold it as if by friction without a limit.
 ///
 /// Where cloth lies on another collider, a body stands on that through the cloth, and slides by Coulomb's law.
+///
+/// A body that has come to rest on a cloth sleeps in rapier as long as the cloth sleeps.
 #[derive(Component, Reflect, Debug, Default, Clone, Copy)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone)]
@@ -72,7 +80,20 @@ pub(crate) fn add_push_back(app: &mut App, schedule: Interned<dyn ScheduleLabel>
         );
 }
 
-fn release_body(removed: On<Remove, ClothPushBack>, mut commands: Commands) {
+/// Forgets a body, and wakes it if cloth held it.
+fn release_body(
+    removed: On<Remove, ClothPushBack>,
+    held: Query<(&ClothPush, &RapierRigidBodyHandle, &RapierContextEntityLink)>,
+    mut contexts: Query<&mut RapierRigidBodySet>,
+    mut commands: Commands,
+) {
+    if let Ok((push, handle, link)) = held.get(removed.entity)
+        && push.is_held
+        && let Ok(context) = contexts.get_mut(link.0)
+        && let Some(body) = context.into_inner().bodies.get_mut(handle.0)
+    {
+        body.wake_up(true);
+    }
     commands
         .entity(removed.entity)
         .try_remove::<(ClothBody, ClothPush)>();
@@ -137,12 +158,46 @@ fn read_masses(
     }
 }
 
-/// Adds the change of velocity from the cloth to rapier's velocity.
-fn push_back(mut bodies: Query<(&ClothPush, &mut Velocity), With<ClothPushBack>>) {
-    for (push, mut velocity) in &mut bodies {
-        if *push != ClothPush::default() {
+/// Adds the change of velocity from the cloth to rapier's velocity. A body that sleeping cloth holds sleeps in rapier, too, until
+/// the cloth lets go of it.
+fn push_back(
+    mut bodies: Query<
+        (
+            Ref<ClothPush>,
+            &mut Velocity,
+            &Transform,
+            &RapierRigidBodyHandle,
+            &RapierContextEntityLink,
+        ),
+        With<ClothPushBack>,
+    >,
+    mut contexts: Query<&mut RapierRigidBodySet>,
+) {
+    for (push, mut velocity, transform, handle, link) in &mut bodies {
+        if !push.is_held && *push != ClothPush::default() {
             velocity.linear += push.velocity;
             velocity.angular += push.angular_velocity;
+        }
+        if !push.is_held && !push.is_changed() {
+            continue;
+        }
+        let context = contexts.get_mut(link.0).ok();
+        let Some(body) = context.and_then(|context| context.into_inner().bodies.get_mut(handle.0))
+        else {
+            continue;
+        };
+        match push.is_held {
+            true if !body.is_sleeping() => {
+                // Rapier wakes a body whose components say something else than it does.
+                *velocity = Velocity::zero();
+                let seen = GlobalTransform::from(*transform).compute_transform();
+                let mut place = *body.position();
+                (place.translation, place.rotation) = (seen.translation, seen.rotation);
+                body.set_position(place, false);
+                body.sleep();
+            }
+            false if body.is_sleeping() => body.wake_up(true),
+            _ => {}
         }
     }
 }

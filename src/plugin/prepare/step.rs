@@ -11,8 +11,8 @@ use super::{
 };
 use crate::{
     contact::ContactSettings,
-    plugin::state::{ClothBuilt, ClothState, EffectiveWind},
-    solver::{Substepping, TickStep},
+    plugin::state::{ClothBuilt, ClothState, EffectiveWind, RestsOn},
+    solver::{RestRule, Substepping, TickStep},
 };
 
 /// Decides whether the cloth may sleep, and wakes it if other forces act on it than before.
@@ -40,8 +40,14 @@ pub(super) fn see_whether_it_rests(
         state.rest.disturb();
     } else if !state.rest.is_asleep() {
         let scale = (built.surface().diagonal(), acceleration.length());
-        let lies_on_cloth = inputs.self_collision.is_some() && state.layer_substeps > 0;
-        state.rest.observe(seconds, particles, scale, lies_on_cloth);
+        let rule = if state.rests_on.iter().any(RestsOn::is_body) {
+            RestRule::Carries
+        } else if inputs.self_collision.is_some() && state.layer_substeps > 0 {
+            RestRule::Layers
+        } else {
+            RestRule::Free
+        };
+        state.rest.observe(seconds, particles, scale, rule);
     }
     // The plugin's own writing, up to here.
     state.inputs.written = Some(particles.last_changed());

@@ -170,7 +170,9 @@ impl SearchQueryItem<'_, '_> {
         }
         let root = self.root();
         if self.state.rest.is_asleep() {
-            if self.sleeps_on(&root, colliders) {
+            // Without time nothing moves yet.
+            let stands = (self.scratch.step).is_some_and(|step| step.seconds == 0.0);
+            if stands || self.sleeps_on(&root, colliders) {
                 return;
             }
             self.state.rest.disturb();
@@ -235,13 +237,13 @@ impl SearchQueryItem<'_, '_> {
     /// Whether all colliders that touched a cloth as it fell asleep still rest in place, and no other has come.
     fn sleeps_on(&mut self, root: &BoundingSphere, colliders: &Colliders) -> bool {
         let layers = self.layers();
-        let rests_on = &self.state.rests_on;
-        let rests_still = |known: &RestsOn| {
+        let far = Vec3::from(self.frame.isometry().translation).length();
+        let rests_still = |known: &mut RestsOn| {
             let motion = colliders.get(known.entity, layers);
             let moving = motion.and_then(|motion| motion.seen_from(self.frame, None));
-            moving.is_some_and(|moving| known.is(&moving))
+            moving.is_some_and(|moving| known.still_rests(&moving, far))
         };
-        if !rests_on.iter().all(rests_still) {
+        if !self.state.rests_on.iter_mut().all(rests_still) {
             return false;
         }
         let ClothScratch {
@@ -258,7 +260,12 @@ impl SearchQueryItem<'_, '_> {
         let sleep_detection = Detection::default();
         let mut has_bounds = false;
         for (entity, motion) in colliders.near(centre, radius, layers) {
-            if rests_on.iter().any(|known| known.entity == entity) {
+            if self
+                .state
+                .rests_on
+                .iter()
+                .any(|known| known.entity == entity)
+            {
                 continue;
             }
             let Some(collider) = motion.seen_from(self.frame, None) else {
@@ -310,7 +317,8 @@ impl SearchQueryItem<'_, '_> {
                 SearchMethod::Tree(..) => query.search(tree, bounds, self.particles, &probe),
                 SearchMethod::Auto | SearchMethod::Scan => query.scan(self.particles, &probe),
             };
-            is_dragged |= !found.is_empty() && collider.max_surface_travel(1.0) > 0.0;
+            is_dragged |= !(found.is_empty() || collider.is_settled())
+                && collider.max_surface_travel(1.0) > 0.0;
             let found = &query.candidates()[found];
             let known = self.contacts.with(entity);
             if known.is_none_or(|contact| contact.is_embedded) {

@@ -2,13 +2,14 @@
 
 use bevy::{
     ecs::{
-        change_detection::DetectChangesMut,
+        change_detection::{DetectChangesMut, Mut},
         entity::Entity,
         hierarchy::ChildOf,
         query::Has,
-        system::{Local, Query},
+        system::{Local, Query, Res},
     },
     math::Vec3,
+    time::Time,
     transform::components::Transform,
 };
 
@@ -17,7 +18,7 @@ use crate::{
     plugin::{
         authoring::{ClothBody, ClothOrder, ClothPush, Ordered},
         prepare::ColliderMotion,
-        state::ClothScratch,
+        state::{ClothScratch, ClothState},
     },
 };
 
@@ -34,15 +35,23 @@ type PushedBody = (
 /// Sums the changes of each body's motion by all cloths, and moves the body by them. A body that several cloths push is
 /// cut into equal parts, one for each cloth, which move on together.
 pub(crate) fn push_bodies(
-    cloths: Query<(Entity, Option<&ClothOrder>, &ClothScratch)>,
+    cloths: Query<(Entity, Option<&ClothOrder>, &ClothScratch, &ClothState)>,
     mut bodies: Query<PushedBody>,
+    time: Option<Res<Time>>,
     mut pushes: Local<Vec<(Ordered, Entity, [BodyChange; 2])>>,
+    mut held: Local<Vec<Entity>>,
 ) {
     pushes.clear();
+    held.clear();
     if bodies.is_empty() {
         return;
     }
-    for (cloth, order, scratch) in &cloths {
+    for (cloth, order, scratch, state) in &cloths {
+        // One that stands still by its level of detail is not prepared.
+        if state.rest.is_asleep() && scratch.step.is_some() {
+            let bodies = state.rests_on.iter().filter(|on| on.is_body());
+            held.extend(bodies.map(|on| on.entity));
+        }
         let cloth = (order.copied().unwrap_or_default(), cloth);
         pushes.extend(
             scratch
@@ -51,6 +60,8 @@ pub(crate) fn push_bodies(
                 .map(|&(body, change)| (cloth, body, change)),
         );
     }
+    held.sort_unstable();
+    let seconds = time.map_or(0.0, |time| time.delta_secs());
     // A sum of floats is that of its order.
     pushes.sort_unstable_by_key(|(cloth, body, _)| (*cloth, *body));
     for (entity, mut push, body, motion, transform, is_child) in &mut bodies {
@@ -60,21 +71,52 @@ pub(crate) fn push_bodies(
         };
         let of_this = pushes.iter().filter(|(_, pushed, _)| *pushed == entity);
         let count = of_this.clone().count() as u32;
+        if count == 0 && !is_child && held.binary_search(&entity).is_ok() {
+            hold(&mut push, &mut motion, &mut transform, (body, seconds));
+            continue;
+        }
         let sum = sum(of_this.map(|(_, _, change)| change), motion.cloths(), body);
         push.set_if_neq(ClothPush {
             velocity: sum.velocity,
             angular_velocity: sum.angular_velocity,
+            is_held: false,
         });
         if count > 0 || motion.cloths() > 1 {
             motion.set_cloths(count);
         }
-        if is_child || (sum.translation == Vec3::ZERO && sum.rotation == Vec3::ZERO) {
+        if is_child {
+            motion.unsettle();
             continue;
         }
-        let (gone, turned) = motion.pushed(&sum, body);
-        transform.translation += gone;
-        transform.rotation = (turned * transform.rotation).normalize();
+        if sum.translation != Vec3::ZERO || sum.rotation != Vec3::ZERO {
+            let (gone, turned) = motion.pushed(&sum, body);
+            transform.translation += gone;
+            transform.rotation = (turned * transform.rotation).normalize();
+        }
+        motion.note_stay(seconds);
     }
+}
+
+/// Holds a body that lies on sleeping cloth where it was before the tick. `seconds` is the length of that.
+fn hold(
+    push: &mut Mut<ClothPush>,
+    motion: &mut ColliderMotion,
+    transform: &mut Mut<Transform>,
+    (body, seconds): (&ClothBody, f32),
+) {
+    let [mut velocity, mut angular_velocity] = [Vec3::ZERO; 2];
+    if seconds > 0.0
+        && let Some((back, place)) = motion.put_back()
+    {
+        velocity = body.free_translation(back[0] / seconds);
+        angular_velocity = body.free_rotation(back[1] / seconds);
+        (transform.translation, transform.rotation) = (place.translation.into(), place.rotation);
+    }
+    push.set_if_neq(ClothPush {
+        velocity,
+        angular_velocity,
+        is_held: true,
+    });
 }
 
 /// The total of changes by several cloths, each of which pushed a part of the body. Of a change, the second part comes from

@@ -114,13 +114,14 @@ impl IntegrateQueryItem<'_, '_> {
             near, detection, ..
         } = &*self.scratch;
         let touches = detection.touches().iter();
-        let known =
-            touches.filter_map(|touch| Some(RestsOn::new(near.get(touch.id)?.0, &touch.collider)));
+        // A body's own path, without the pushes of the tick.
+        let known = touches.filter_map(|touch| near.get(touch.id));
+        let known = known.map(|(entity, collider)| RestsOn::new(*entity, collider));
         self.state.rests_on.clear();
         self.state.rests_on.extend(known);
     }
 
-    /// Notes the cloth's pushes on bodies. While it pushes one, it does not rest.
+    /// Notes the cloth's pushes on bodies. While it pushes one that moves, it does not rest.
     fn push_bodies(&mut self) {
         let ClothScratch {
             near,
@@ -131,11 +132,8 @@ impl IntegrateQueryItem<'_, '_> {
         let ClothState { carriers, rest, .. } = &mut *self.state;
         carriers.clear();
         let rotation = self.frame.isometry().rotation;
-        for (id, (entity, _)) in near
-            .iter()
-            .enumerate()
-            .filter(|(_, near)| near.1.body.is_some())
-        {
+        let bodies = near.iter().enumerate();
+        for (id, (entity, collider)) in bodies.filter(|(_, near)| near.1.body.is_some()) {
             let carrying = detection.carriers(id).iter();
             carriers.extend(carrying.map(|carrier| (*entity, *carrier)));
             if let Some(change) = detection.body_change(id)
@@ -143,7 +141,9 @@ impl IntegrateQueryItem<'_, '_> {
             {
                 let changes = [change, detection.body_held(id)];
                 pushed.push((*entity, changes.map(|change| change.turned(rotation))));
-                rest.disturb();
+                if !collider.is_settled() {
+                    rest.disturb();
+                }
             }
         }
     }

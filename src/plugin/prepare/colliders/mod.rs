@@ -5,6 +5,7 @@
 mod changes;
 mod follow;
 mod motion;
+mod stay;
 mod tree;
 
 pub(crate) use changes::{ChangedColliders, note_enabled, note_removals};

@@ -5,7 +5,7 @@ use bevy::{
     math::{Isometry3d, Mat3, Quat, Vec3, Vec3A},
 };
 
-use super::tree::Bounds;
+use super::{stay::Stay, tree::Bounds};
 use crate::{
     cloth::{ClothError, FARTHEST},
     contact::{BodyChange, BodyMass, ClothCollider, ColliderShape, MovingCollider},
@@ -28,6 +28,10 @@ pub(crate) struct ColliderMotion {
     moving: Option<MovingCollider>,
     /// Place of its entity after the last tick in which time passed. The frame of the shape may be another.
     last: Option<Isometry3d>,
+    /// The same, a tick earlier.
+    before: Option<Isometry3d>,
+    /// How long it has been where it is, if it is a body.
+    stay: Stay,
     /// Middle of its path (m), and the largest distance from there to any of the collider's points on it.
     middle: Vec3,
     reach: f32,
@@ -47,6 +51,7 @@ pub(crate) struct ColliderMotion {
 pub(crate) struct ColliderMemory {
     last: Option<Isometry3d>,
     cloths: u32,
+    stay: Stay,
 }
 
 /// A shape, with its collider and scale.
@@ -175,6 +180,7 @@ impl ColliderMotion {
                     let origin = last.rotation * Vec3::from(offset.translation);
                     Some(BodyMass {
                         centre: mass.centre - origin,
+                        is_settled: self.stay.is_long() && self.cloths() == 1,
                         ..mass
                     })
                 }
@@ -192,6 +198,7 @@ impl ColliderMotion {
         self.moving = Some(moving);
         // If it is moved while no time passes, the motion counts in the next tick with time.
         self.last = Some(if time_passes { place } else { last });
+        self.before = Some(last);
         Ok(())
     }
 
@@ -253,26 +260,62 @@ impl ColliderMotion {
         (gone, turned)
     }
 
+    /// Puts it back to where it was before the tick, if it has moved. Returns the displacement of its centre of mass (m) and the rotation
+    /// by that (rad), and the place of its entity.
+    pub fn put_back(&mut self) -> Option<([Vec3; 2], Isometry3d)> {
+        let (moving, before) = (self.moving.as_ref()?, self.before?);
+        let start = Vec3::from(moving.from.translation);
+        let rounding = 4.0 * f32::EPSILON * (start.length() + moving.shape.extent());
+        if moving.max_surface_travel(f32::INFINITY) <= rounding {
+            return None;
+        }
+        let centre = moving.body?.centre;
+        let swing = Quat::from_scaled_axis(moving.turn) * centre - centre;
+        let gone = moving.to - start + swing;
+        self.last = Some(before);
+        Some(([-gone, -moving.turn], before))
+    }
+
+    /// Notes where it is after a tick of this length (s).
+    pub fn note_stay(&mut self, seconds: f32) {
+        if let (Some(last), Some(built)) = (self.last, &self.built) {
+            let (place, extent) = (last * built.offset, built.shape.extent());
+            self.stay.note(place, extent, seconds);
+        }
+    }
+
+    /// Takes it as one that has just moved.
+    pub fn unsettle(&mut self) {
+        self.stay = Stay::default();
+    }
+
     /// The inputs of its next path.
     pub fn memory(&self) -> ColliderMemory {
         ColliderMemory {
             last: self.last,
             cloths: self.cloths,
+            stay: self.stay,
         }
     }
 
     /// Restores the inputs of its next path, from a snapshot.
-    pub fn recall(&mut self, ColliderMemory { last, cloths }: ColliderMemory) {
-        (self.last, self.cloths) = (last, cloths);
+    pub fn recall(&mut self, memory: ColliderMemory) {
+        ColliderMemory {
+            last: self.last,
+            cloths: self.cloths,
+            stay: self.stay,
+        } = memory;
     }
 
     /// Shifts it with the world's origin; its entity is at `now`.
     pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
         self.last = self.last.map(|last| shift.rigid(last, now));
+        self.stay = self.stay.shifted(shift);
     }
 
     /// Forgets its motion: wherever it is read next, its path begins there.
     pub fn stop(&mut self) {
+        self.unsettle();
         self.last = None;
     }
 
