@@ -108,8 +108,8 @@ fn with_a_ball(is_body: bool) -> usize {
     })
 }
 
-/// Allocations with a box that sinks onto a cloth on a table or on the ground again and again, and is held.
-fn with_a_box_that_stands(is_table: bool) -> usize {
+/// Allocations with a box that sinks onto a cloth on a table or on the ground again and again, and is held, by a cloth that sleeps or not.
+fn with_a_box_that_stands(is_table: bool, sleeps: bool) -> usize {
     let mut app = app_on_one_thread(());
     let (ground, height) = match is_table {
         true => (ClothCollider::cuboid(1.4, 0.2, 1.4), -0.1),
@@ -120,6 +120,7 @@ fn with_a_box_that_stands(is_table: bool) -> usize {
     let cloth = Cloth::new(20, 20, 0.05).lying().centred();
     let settings = ClothSettings {
         particle_radius: 0.004,
+        sleeps,
         ..default()
     };
     let place = Transform::from_xyz(0.0, 0.004, 0.0);
@@ -206,9 +207,10 @@ pub fn what_is_pushed_allocates_nothing() {
         let allocations = with_a_ball(is_body);
         assert_eq!(allocations, 0, "pushed back: {is_body}");
     }
-    for is_table in [true, false] {
-        let allocations = with_a_box_that_stands(is_table);
-        assert_eq!(allocations, 0, "a box stands on a table: {is_table}");
+    for (is_table, sleeps) in [(true, true), (true, false), (false, false)] {
+        let allocations = with_a_box_that_stands(is_table, sleeps);
+        let what = format!("a box stands on a table: {is_table}, sleeps: {sleeps}");
+        assert_eq!(allocations, 0, "{what}");
     }
 }
 

@@ -160,7 +160,7 @@ fn a_wall_thinner_than_a_spacing_holds_cloth() {
     }
 }
 
-/// Random walls of 1 to 8 cm, cloth of 0.1 m between particles: nothing of them shows for longer than a tick, and in few ticks at all.
+/// Random walls of 1 to 8 cm, cloth of 0.1 m between particles: their edges show in few ticks, and then by less than a particle's radius.
 #[test]
 fn thin_walls_hardly_show() {
     let count = if is_long() { 200 } else { 12 };
@@ -184,7 +184,6 @@ fn thin_walls_hardly_show() {
         let wall = ClothCollider::cuboid(size.x, size.y, size.z);
         app.world_mut().spawn((wall, place));
         let edges = box_edges(size, place);
-        let mut before = false;
         for tick_of in 0..128 {
             tick(&mut app, 1);
             let depth = shows_through(&app, cloth, &edges);
@@ -192,8 +191,7 @@ fn thin_walls_hardly_show() {
             if shows {
                 println!("{size} in tick {tick_of}: {depth} m");
             }
-            assert!(!(shows && before), "{size} in tick {tick_of}: {depth} m");
-            before = shows;
+            assert!(depth < 0.01, "{size} in tick {tick_of}: {depth} m");
             shown += i32::from(shows);
             ticks += 1;
         }

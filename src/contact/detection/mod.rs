@@ -99,6 +99,19 @@ impl Detection {
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
+        let margin = self.margin.size();
+        Self::probe_within(margin, collider, settings, surface, longest_edge, cloth)
+    }
+
+    /// The same with a given margin (m).
+    pub(crate) fn probe_within(
+        margin: f32,
+        collider: &MovingCollider,
+        settings: &ContactSettings,
+        surface: &Surface,
+        longest_edge: f32,
+        cloth: &BoundingSphere,
+    ) -> (Probe, NarrowPhase) {
         let spacing = surface.spacing().longest;
         let narrow_phase = settings
             .narrow_phase
@@ -110,11 +123,7 @@ impl Detection {
         // Rounding of a position in each sub-step may add this to its displacement.
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
         let rounding = (farthest + collider.farthest_distance(cloth)) * 1.0e-5;
-        let probe = collider.probe(
-            self.margin.size() + cover + rounding,
-            settings.particle_radius,
-            cloth,
-        );
+        let probe = collider.probe(margin + cover + rounding, settings.particle_radius, cloth);
         (probe, narrow_phase)
     }
 

@@ -256,8 +256,6 @@ impl SearchQueryItem<'_, '_> {
         let (tree, surface) = (self.built.tree(), self.built.surface());
         let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
         let cover = cover(contact_settings, stretch, surface);
-        // Nothing of the cloth moves towards anything.
-        let sleep_detection = Detection::default();
         let mut has_bounds = false;
         for (entity, motion) in colliders.near(centre, radius, layers) {
             if self
@@ -277,8 +275,9 @@ impl SearchQueryItem<'_, '_> {
                 debug_assert!(outcome.is_ok(), "spheres have a rest shape");
                 has_bounds = true;
             }
+            // Nothing of the cloth moves towards anything.
             let (probe, narrow_phase) =
-                sleep_detection.probe(&collider, contact_settings, surface, cover, root);
+                Detection::probe_within(0.0, &collider, contact_settings, surface, cover, root);
             query.clear();
             query.search(tree, bounds, self.particles, &probe);
             let met = match narrow_phase {

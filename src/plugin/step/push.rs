@@ -46,6 +46,7 @@ pub(crate) fn push_bodies(
     if bodies.is_empty() {
         return;
     }
+    held.reserve(bodies.iter().len());
     for (cloth, order, scratch, state) in &cloths {
         // One that stands still by its level of detail is not prepared.
         if state.rest.is_asleep() && scratch.step.is_some() {
