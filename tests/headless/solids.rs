@@ -160,7 +160,7 @@ fn a_wall_thinner_than_a_spacing_holds_cloth() {
     }
 }
 
-/// Random walls of 1 to 8 cm, cloth of 0.1 m between particles: their edges show in few ticks, and then by less than a particle's radius.
+/// Random walls of 1 to 8 cm, cloth of 0.1 m between particles: their edges show in few ticks, and then by less than half of the spacing.
 #[test]
 fn thin_walls_hardly_show() {
     let count = if is_long() { 200 } else { 12 };
@@ -191,13 +191,13 @@ fn thin_walls_hardly_show() {
             if shows {
                 println!("{size} in tick {tick_of}: {depth} m");
             }
-            assert!(depth < 0.01, "{size} in tick {tick_of}: {depth} m");
+            assert!(depth < 0.05, "{size} in tick {tick_of}: {depth} m");
             shown += i32::from(shows);
             ticks += 1;
         }
     }
     println!("{shown} of {ticks} ticks");
-    assert!(shown * 1000 <= ticks, "{shown} of {ticks} ticks");
+    assert!(shown * 200 <= ticks, "{shown} of {ticks} ticks");
 }
 
 /// A sheet of two triangles, 2 m wide, goes through a falling cloth at 1 to 60 m/s, or the cloth's triangles would: it takes it
