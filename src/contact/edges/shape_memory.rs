@@ -318,8 +318,7 @@ impl ShapeMemory {
         (&mut self.planes, self.tick)
     }
 
-    /// Clears the positions, but not what is reused in a tick: the shape's outward directions, and the planes of touching
-    /// particles.
+    /// Clears the positions, but not what is reused in a tick: the sides of triangles, and the planes of touching particles.
     #[cfg(test)]
     pub fn forget(&mut self) {
         self.planes.iter_mut().for_each(Planes::forget);
