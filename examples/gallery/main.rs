@@ -55,6 +55,10 @@ const ENTRIES: &[Entry] = &[
         pictures: &[("dress.png", "a skirt that twirls")],
     },
     Entry {
+        name: "sleeve",
+        pictures: &[("sleeve.png", "an arm in its sleeve")],
+    },
+    Entry {
         name: "tent",
         pictures: &[("tent.png", "a pavilion in the wind")],
     },

@@ -59,7 +59,7 @@ pub(crate) use presence::ClothPresence;
 pub(crate) use sewing::{SewnSide, Stitch, stitches};
 pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage, StiffnessFactors};
-#[cfg(feature = "mesh")]
-pub(crate) use surface::skin_of_asset;
 pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, ShortestPaths};
+#[cfg(feature = "mesh")]
+pub(crate) use surface::{JointWeights, same_places, skin_of_asset};
 pub(crate) use tearing::{Strength, TearSearch};

@@ -26,10 +26,12 @@ pub(crate) use bodies::Carrier;
 pub use candidates::{ContactPoint, NarrowPhase};
 #[doc(hidden)]
 pub use candidates::{ContactSettings, PARTICLES_FROM, Touch};
+pub(crate) use colliders::SkinnedTriangles;
 #[doc(hidden)]
 pub use colliders::{BodyMass, MovingCollider};
 pub use colliders::{
-    ClothCollider, ClothLayers, ColliderGeometry, ColliderShape, MeshCollider, SharedCollider,
+    ClothCollider, ClothLayers, ColliderGeometry, ColliderShape, DeformingMesh, MeshCollider,
+    SharedCollider,
 };
 #[doc(hidden)]
 pub use detection::Detection;

@@ -140,8 +140,18 @@ fn with_a_box_that_stands(is_table: bool, sleeps: bool) -> usize {
     })
 }
 
-/// Allocations with a skinned cloth whose only bone moves, and its root.
-fn with_a_character(follows: bool) -> usize {
+/// What a skinned sheet does.
+#[derive(Clone, Copy, PartialEq)]
+enum Skinned {
+    Cloth,
+    /// It follows its pose, and is carried along by its root.
+    Followed,
+    /// It is a collider, below a cloth.
+    Collider,
+}
+
+/// Allocations with a skinned sheet whose only bone moves, and its root.
+fn with_a_character(skinned: Skinned) -> usize {
     let mut app = app_on_one_thread((AssetPlugin::default(), MeshPlugin));
     app.init_asset::<SkinnedMeshInverseBindposes>();
     let sheet = meshes::irregular(1.0, 1.0, 0.05, 0.2);
@@ -171,17 +181,24 @@ fn with_a_character(follows: bool) -> usize {
         inverse_bindposes,
         joints: vec![bone],
     };
-    let cloth = (
-        Cloth::mesh(),
-        Mesh3d(mesh),
-        skin,
-        Pins::new([Pin::Vertex(0)]),
-    );
-    let cloth = world.spawn((cloth, ChildOf(root))).id();
-    if follows {
+    let sheet = world.spawn((Mesh3d(mesh), skin, ChildOf(root))).id();
+    match skinned {
+        Skinned::Collider => {
+            world.entity_mut(sheet).insert(ClothCollider::mesh());
+            // Drawn against it.
+            world.insert_resource(ClothGravity(Vec3::NEG_Z * 9.81));
+            let place = Transform::from_xyz(0.0, 0.0, 0.02);
+            world.spawn((Cloth::new(20, 20, 0.05), Pins::none(), place));
+        }
+        Skinned::Cloth | Skinned::Followed => {
+            let cloth = (Cloth::mesh(), Pins::new([Pin::Vertex(0)]));
+            world.entity_mut(sheet).insert(cloth);
+        }
+    }
+    if skinned == Skinned::Followed {
         let skin = ClothSkin::within(ClothPaint::at_rest(|place| 0.1 * place.x));
         world
-            .entity_mut(cloth)
+            .entity_mut(sheet)
             .insert(skin.with_backstop(0.05, 1.0));
         world.entity_mut(root).insert(ClothInertia::share(0.3));
     }
@@ -194,11 +211,13 @@ fn with_a_character(follows: bool) -> usize {
     })
 }
 
-/// Whether a cloth follows its skeleton, and is carried along, or does not.
+/// Whether a cloth follows its skeleton, and is carried along, or does not; and a skinned collider nothing.
 pub fn characters_allocate_nothing_more() {
-    let [without, with] = [false, true].map(with_a_character);
+    let all = [Skinned::Cloth, Skinned::Followed, Skinned::Collider];
+    let [without, with, collider] = all.map(with_a_character);
     println!("{with} of {without}");
     assert!(with <= without, "{with} of {without}");
+    assert_eq!(collider, 0, "a collider that is skinned");
 }
 
 /// Whether a ball pushes cloth alone or is pushed back.

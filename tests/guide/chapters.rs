@@ -96,7 +96,7 @@ mod scene {
 mod coat {
     include!("coat.rs");
 
-    /// Bones may come later: nothing is at fault without them. A mesh of that name becomes cloth.
+    /// Bones may come later: nothing is at fault without them. A mesh of that name becomes cloth, or a collider.
     #[test]
     fn a_hero_without_a_skeleton_is_no_fault_and_the_coat_is_cloth() {
         let mut app = super::app(hero, |_: &mut App| {});
@@ -105,6 +105,9 @@ mod coat {
         make_cloth(&Name::new("coat"), mesh, &mut world.commands());
         world.flush();
         assert!(world.entity(mesh).contains::<ClothSkin>());
+        make_cloth(&Name::new("body"), mesh, &mut world.commands());
+        world.flush();
+        assert!(world.entity(mesh).contains::<ClothCollider>());
         world.despawn(mesh);
         super::run(&mut app, 0.1);
     }

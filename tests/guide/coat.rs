@@ -13,6 +13,10 @@ fn make_cloth(name: &Name, mesh: Entity, commands: &mut Commands) {
             ClothMaterial::DENIM,
         ));
     }
+    if name.as_str() == "body" {
+        // Its triangles follow the bones.
+        commands.entity(mesh).insert(ClothCollider::mesh());
+    }
 }
 
 fn hero(mut commands: Commands) {

@@ -1,4 +1,4 @@
-//! Linear blend skinning of a cloth's particles.
+//! Linear blend skinning of particles and vertices.
 
 use bevy::math::{Affine3A, Vec3, Vec3A};
 
@@ -54,6 +54,30 @@ impl Skinning {
             .into_iter()
             .map(Option::unwrap_or_default)
             .collect();
+        Ok(Self::of(particles))
+    }
+
+    /// Binds vertices, by their positions (m), joints and weights. They have no normals.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    #[cfg(feature = "mesh")]
+    pub fn of_vertices(
+        vertices: impl Iterator<Item = (Vec3, JointWeights)>,
+    ) -> Result<Self, ClothError> {
+        let bound = |(vertex, (place, skin)): (usize, (Vec3, JointWeights))| {
+            Ok(Bound {
+                place: place.into(),
+                normal: Vec3A::ZERO,
+                skin: normalized(vertex, &skin)?,
+            })
+        };
+        let bound: Result<_, ClothError> = vertices.enumerate().map(bound).collect();
+        bound.map(Self::of)
+    }
+
+    #[cfg(feature = "mesh")]
+    fn of(particles: Vec<Bound>) -> Self {
         let moving = |Bound { skin, .. }: &Bound| {
             let each = skin.joints.into_iter().zip(skin.weights);
             each.filter(|(_, weight)| *weight > 0.0)
@@ -61,7 +85,7 @@ impl Skinning {
                 .max()
         };
         let joints = particles.iter().filter_map(moving).max().unwrap_or(0);
-        Ok(Self { particles, joints })
+        Self { particles, joints }
     }
 
     /// Number of joints required.

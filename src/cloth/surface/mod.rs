@@ -55,6 +55,8 @@ pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
 pub(crate) use triangles::JointWeights;
+#[cfg(feature = "mesh")]
+pub(crate) use weld::same_places;
 
 /// A cloth's surface at rest: its particles, the triangles between them, their areas and neighbours. It is in the
 /// cloth's own frame, in metres, with the transform's scale applied.

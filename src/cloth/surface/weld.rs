@@ -3,7 +3,7 @@
 use bevy::{math::Vec3, platform::collections::HashMap};
 
 /// The first vertex at each position, and the position of each vertex: the first within `weld`.
-pub(super) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>) {
+pub(crate) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>) {
     // With cells this large, most vertices need only their own cell.
     let size = 8.0 * weld;
     // −0 becomes 0.

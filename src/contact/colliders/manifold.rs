@@ -169,6 +169,8 @@ impl ColliderShape {
             Self::Cuboid { half_size } => visit(Pose::IDENTITY, &Cuboid::new(half_size)),
             Self::HalfSpace => visit(Pose::IDENTITY, &HalfSpace::new(Vec3::Y)),
             Self::Geometry(ref geometry) => geometry.for_each_solid(visit),
+            // Bodies do not stand on it.
+            Self::Deforming(_) => {}
         }
     }
 }

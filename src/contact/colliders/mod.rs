@@ -3,6 +3,7 @@
 mod boxes;
 mod collider;
 mod collision_layers;
+mod deforming;
 mod geometry;
 mod manifold;
 mod mass;
@@ -11,9 +12,14 @@ mod nearest;
 mod primitives;
 mod shape;
 mod source;
+mod triangle;
 
 pub use collider::{ClothCollider, MeshCollider};
 pub use collision_layers::ClothLayers;
+pub use deforming::DeformingMesh;
+pub(crate) use deforming::SkinnedTriangles;
+#[cfg(all(test, feature = "mesh"))]
+pub(crate) use deforming::Topology;
 pub use geometry::ColliderGeometry;
 pub(crate) use geometry::SharpEdge;
 pub(crate) use manifold::{MOST_POINTS, Manifold, ManifoldPoint};
@@ -23,3 +29,6 @@ pub(crate) use moving::{ColliderSubstep, moving_of};
 pub(crate) use nearest::Nearest;
 pub use shape::ColliderShape;
 pub use source::SharedCollider;
+#[cfg(test)]
+pub(crate) use triangle::area_within;
+pub(crate) use triangle::{NearestPoints, at, cap, nearest, nearest_of_segments, nearest_to_point};

@@ -80,7 +80,7 @@ impl MovingCollider {
         self.start().distance(self.to)
     }
 
-    /// Largest displacement of its surface in the tick by translation and rotation (m): cloth that sticks to it is
+    /// Largest displacement of its surface in the tick by translation, rotation and deformation (m): cloth that sticks to it is
     /// dragged that far. For a rotating half-space, only points within `within` of its origin count (m).
     pub fn max_surface_travel(&self, within: f32) -> f32 {
         let turn = self.turn.length();
@@ -89,7 +89,7 @@ impl MovingCollider {
         } else {
             0.0
         };
-        self.travel() + swing
+        self.travel() + swing + self.shape.deformation()
     }
 
     /// Largest displacement of any point of its core by rotation alone in the tick (m): 0 for a ball.
@@ -110,7 +110,11 @@ impl MovingCollider {
             ColliderShape::Ball { .. } => Quat::IDENTITY,
             _ => after.rotation * before.rotation.inverse(),
         };
-        let offset = point - Vec3::from(before.translation);
+        let mut offset = point - Vec3::from(before.translation);
+        if let ColliderShape::Deforming(mesh) = &self.shape {
+            let displacement = mesh.displacement_at(from, before.rotation.inverse() * offset);
+            offset += before.rotation * displacement * (to - from);
+        }
         (
             Vec3::from(after.translation) + rotation * offset,
             rotation * normal,
@@ -131,7 +135,8 @@ impl MovingCollider {
             ColliderShape::Capsule { .. }
             | ColliderShape::Cuboid { .. }
             | ColliderShape::HalfSpace
-            | ColliderShape::Geometry(_) => {
+            | ColliderShape::Geometry(_)
+            | ColliderShape::Deforming(_) => {
                 let pose = self.pose_at(0.5);
                 let (core, radius) = self.shape.core(pose);
                 // Particles may leave the sphere by the margin.
@@ -165,13 +170,21 @@ impl MovingCollider {
             slide: (self.to - self.start()) / count,
             turn: self.turn / count,
             swing: self.swing() / count,
+            deformation: self.shape.deformation() / count,
         }
     }
 
     /// The surface nearest to a point at a fraction of the tick.
     #[inline]
     pub(crate) fn nearest(&self, part: f32, point: Vec3) -> Nearest {
-        self.shape.nearest(self.pose_at(part), point)
+        let pose = self.pose_at(part);
+        match &self.shape {
+            ColliderShape::Deforming(mesh) => {
+                let nearest = mesh.nearest(part, pose.inverse() * point);
+                nearest.turned(pose.rotation)
+            }
+            shape => shape.nearest(pose, point),
+        }
     }
 }
 
@@ -186,20 +199,38 @@ pub(crate) struct ColliderSubstep<'a> {
     /// Its displacement (m) and rotation (rad).
     pub slide: Vec3,
     pub turn: Vec3,
-    /// Largest displacement of any point of its core by rotation alone (m).
+    /// Largest displacement of any point of its core by rotation alone, and of its surface by deformation (m).
     pub swing: f32,
+    pub deformation: f32,
 }
 
 impl ColliderSubstep<'_> {
     /// Displacement of its surface at a point (m).
     pub fn surface_motion(&self, point: Vec3) -> Vec3 {
-        self.slide + self.turn.cross(point - self.origin)
+        let rigid = self.slide + self.turn.cross(point - self.origin);
+        match &self.collider.shape {
+            ColliderShape::Deforming(mesh) => {
+                let local = self.pose.inverse() * point;
+                let displacement = mesh.displacement_at(self.substep.end(), local);
+                rigid + self.pose.rotation * displacement / self.substep.count as f32
+            }
+            _ => rigid,
+        }
+    }
+
+    /// The surface nearest to a point at the end.
+    #[inline]
+    pub fn nearest(&self, point: Vec3) -> Nearest {
+        match &self.collider.shape {
+            ColliderShape::Deforming(_) => self.collider.nearest(self.substep.end(), point),
+            shape => shape.nearest(self.pose, point),
+        }
     }
 
     /// The largest change of its distance from something that moves by these displacements (m).
     pub fn speed<const N: usize>(&self, displacements: [Vec3; N]) -> f32 {
         let each = displacements.map(|displacement| (displacement - self.slide).length_squared());
-        each.into_iter().fold(0.0, f32::max).sqrt() + self.swing
+        each.into_iter().fold(0.0, f32::max).sqrt() + self.swing + self.deformation
     }
 
     /// The fraction of the tick at a fraction of the sub-step.

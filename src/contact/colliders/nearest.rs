@@ -1,6 +1,6 @@
 //! The nearest point of a shape.
 
-use bevy::math::Vec3;
+use bevy::math::{Quat, Vec3};
 
 /// A point relative to a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,4 +9,14 @@ pub(crate) struct Nearest {
     pub distance: f32,
     /// Direction away from the shape, of length 1.
     pub normal: Vec3,
+}
+
+impl Nearest {
+    /// The same in a frame that is turned.
+    pub fn turned(self, rotation: Quat) -> Self {
+        Self {
+            normal: rotation * self.normal,
+            ..self
+        }
+    }
 }

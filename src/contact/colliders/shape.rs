@@ -8,6 +8,7 @@ use bevy::{
 pub(crate) use super::nearest::Nearest;
 use super::{
     boxes,
+    deforming::DeformingMesh,
     geometry::{ColliderGeometry, SharpEdge},
 };
 use crate::hierarchy::Core;
@@ -36,17 +37,20 @@ pub enum ColliderShape {
     },
     /// The half-space below the xz plane.
     HalfSpace,
-    /// Any other shape.
+    /// Any other rigid shape.
     Geometry(ColliderGeometry),
+    /// A mesh that deforms.
+    Deforming(DeformingMesh),
 }
 
 impl ColliderShape {
-    /// The shape in a pose, as a core and a radius around it. For a geometry, its bounding box.
+    /// The shape in a pose, as a core and a radius around it. For a geometry, its bounding box; for a mesh that deforms, that of
+    /// its whole path.
     pub fn core(&self, pose: Isometry3d) -> (Core, f32) {
         let centre = Vec3::from(pose.translation);
         match *self {
-            Self::Geometry(ref geometry) => {
-                let [lower, upper] = geometry.bounds();
+            Self::Geometry(_) | Self::Deforming(_) => {
+                let [lower, upper] = self.bounds();
                 let pose = Isometry3d::new(
                     centre + pose.rotation * lower.midpoint(upper),
                     pose.rotation,
@@ -76,6 +80,24 @@ impl ColliderShape {
         }
     }
 
+    /// The minimum and maximum corners of the bounding box of a geometry, or of a mesh that deforms along its path (m);
+    /// without end for others.
+    pub(crate) fn bounds(&self) -> [Vec3; 2] {
+        match self {
+            Self::Geometry(geometry) => geometry.bounds(),
+            Self::Deforming(mesh) => mesh.bounds(),
+            _ => [Vec3::NEG_INFINITY, Vec3::INFINITY],
+        }
+    }
+
+    /// Largest displacement of a point of the surface in the tick, in the shape's frame (m): 0 for a rigid shape.
+    pub(crate) fn deformation(&self) -> f32 {
+        match self {
+            Self::Deforming(mesh) => mesh.farthest_move(),
+            _ => 0.0,
+        }
+    }
+
     /// Distance from the origin to the farthest point of the shape (m); infinite for a half-space.
     pub fn extent(&self) -> f32 {
         match *self {
@@ -86,8 +108,8 @@ impl ColliderShape {
             } => radius + half_length,
             Self::Cuboid { half_size } => half_size.length(),
             Self::HalfSpace => f32::INFINITY,
-            Self::Geometry(ref geometry) => {
-                let [lower, upper] = geometry.bounds();
+            Self::Geometry(_) | Self::Deforming(_) => {
+                let [lower, upper] = self.bounds();
                 lower.abs().max(upper.abs()).length()
             }
         }
@@ -98,7 +120,9 @@ impl ColliderShape {
         match *self {
             Self::Ball { .. } => 0.0,
             Self::Capsule { half_length, .. } => half_length,
-            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) => self.extent(),
+            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) | Self::Deforming(_) => {
+                self.extent()
+            }
         }
     }
 
@@ -109,6 +133,7 @@ impl ColliderShape {
             Self::Cuboid { half_size } => half_size.min_element(),
             Self::HalfSpace => f32::INFINITY,
             Self::Geometry(ref geometry) => geometry.thickness(),
+            Self::Deforming(_) => 0.0,
         }
     }
 
@@ -116,7 +141,7 @@ impl ColliderShape {
     pub fn radius(&self) -> Option<f32> {
         match *self {
             Self::Ball { radius } | Self::Capsule { radius, .. } => Some(radius),
-            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) => None,
+            _ => None,
         }
     }
 
@@ -125,9 +150,9 @@ impl ColliderShape {
         matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
     }
 
-    /// Whether it is made of solids whose nearest point is expensive.
+    /// Whether its nearest point is expensive.
     pub(crate) fn is_geometry(&self) -> bool {
-        matches!(self, Self::Geometry(_))
+        matches!(self, Self::Geometry(_) | Self::Deforming(_))
     }
 
     /// The edge with an index of [`edges_near`](Self::edges_near).
@@ -136,7 +161,7 @@ impl ColliderShape {
         match self {
             Self::Cuboid { half_size } => Some(boxes::edge(*half_size, index)),
             Self::Geometry(geometry) => Some(geometry.edge(index)),
-            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+            _ => None,
         }
     }
 
@@ -155,7 +180,7 @@ impl ColliderShape {
                 }
             }
             Self::Geometry(geometry) => geometry.edges_near(within, smooth, visit),
-            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
+            _ => {}
         }
     }
 
@@ -165,7 +190,7 @@ impl ColliderShape {
         match self {
             Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
             Self::Geometry(geometry) => geometry.edge_distance(point, within, smooth),
-            Self::Ball { .. } | Self::Capsule { .. } | Self::HalfSpace => f32::INFINITY,
+            _ => f32::INFINITY,
         }
     }
 
@@ -202,17 +227,18 @@ impl ColliderShape {
         }
     }
 
-    /// The surface nearest to a point, with the shape in a pose.
+    /// The surface nearest to a point, with the shape in a pose; of a mesh that deforms, as the tick ends.
     #[inline]
     pub(crate) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
         let offset = point - Vec3::from(pose.translation);
         match *self {
             Self::Geometry(ref geometry) => {
                 let nearest = geometry.nearest(pose.rotation.inverse() * offset, f32::MAX);
-                Nearest {
-                    normal: pose.rotation * nearest.normal,
-                    ..nearest
-                }
+                nearest.turned(pose.rotation)
+            }
+            Self::Deforming(ref mesh) => {
+                let nearest = mesh.nearest(1.0, pose.rotation.inverse() * offset);
+                nearest.turned(pose.rotation)
             }
             Self::Ball { radius } => around(offset, radius),
             Self::Capsule {

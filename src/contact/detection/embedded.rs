@@ -172,10 +172,10 @@ impl Embedding {
     ) -> f32 {
         self.inside.clear();
         let (pose, mut deepest) = (collider.from, 0.0_f32);
-        let bounds = match &collider.shape {
-            ColliderShape::Geometry(geometry) => Some((pose.inverse(), geometry.bounds())),
-            _ => None,
-        };
+        let shape = &collider.shape;
+        let bounds = shape
+            .is_geometry()
+            .then(|| (pose.inverse(), shape.bounds()));
         for &particle in found {
             let place = particles.position_at(particle as usize);
             let is_beyond = bounds.is_some_and(|(inverse, [low, high])| {
@@ -185,7 +185,7 @@ impl Embedding {
             if is_beyond {
                 continue;
             }
-            let Nearest { distance, normal } = collider.shape.nearest(pose, place);
+            let Nearest { distance, normal } = collider.nearest(0.0, place);
             let depth = particle_radius - distance;
             if depth > 0.0 {
                 deepest = deepest.max(depth);
@@ -353,7 +353,7 @@ impl Embedding {
             let lane = one.slot.lane;
             block.set_inverse_mass(lane, one.inverse_mass);
             let (place, displacement) = (block.position(lane), block.displacement(lane));
-            let nearest = of.collider.shape.nearest(of.pose, place);
+            let nearest = of.nearest(place);
             let depth = settings.particle_radius - nearest.distance;
             let in_contacts = one.place as usize;
             if let Some(contact) = contacts.get_mut(in_contacts / LANES) {

@@ -127,10 +127,11 @@ impl Detection {
         let first = touch.of.blocks.start;
         let contacts = &mut blocks[touch.of.blocks.clone()];
         let has_edges = collider.shape.has_edges();
+        let is_guarded = has_edges || collider.shape.is_geometry();
         // The guard measures the cloth.
-        let odometer = if has_edges { 0.0 } else { margin.odometer() } + touch.travelled;
+        let odometer = if is_guarded { 0.0 } else { margin.odometer() } + touch.travelled;
         let motion = collider.in_substep(substep);
-        let travel = motion.slide.length() + motion.swing;
+        let travel = motion.slide.length() + motion.swing + motion.deformation;
         let shares = match touch.narrow_phase {
             NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
             _ => 1.0,
@@ -140,7 +141,7 @@ impl Detection {
         self.embedding.hide(touch.id, particles);
         let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
-            _ if has_edges => {
+            _ if is_guarded => {
                 self.shapes.reserve(count);
                 let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
                 let of = (touch.id, &collider.shape, self.surface.len());

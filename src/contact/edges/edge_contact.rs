@@ -2,10 +2,7 @@
 
 use bevy::math::{Isometry3d, Vec3};
 
-use crate::contact::{
-    colliders::{ColliderShape, SharpEdge},
-    triangles::nearest,
-};
+use crate::contact::colliders::{ColliderShape, SharpEdge, nearest};
 
 /// An edge counts as below a triangle up to this far beyond its sides, in barycentric weights, so that neighbours leave
 /// no gap.

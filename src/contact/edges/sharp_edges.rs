@@ -14,10 +14,10 @@ use crate::{
     cloth::{ClothParticles, Fan, Slot, Surface},
     contact::{
         candidates::{Candidate, ContactSettings, Guard},
-        colliders::ColliderSubstep,
+        colliders::{ColliderSubstep, at},
         friction::{Contact, Impulse, PushOut, first_touch},
         particles::{ContactResult, ParticlesNearEdges},
-        triangles::{Corners, at},
+        triangles::Corners,
     },
 };
 

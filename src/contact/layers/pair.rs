@@ -3,7 +3,7 @@
 use bevy::math::{Vec3, Vec3A};
 
 use super::members::State;
-use crate::contact::triangles::{at, nearest_of_segments, nearest_to_point};
+use crate::contact::colliders::{at, nearest_of_segments, nearest_to_point};
 
 /// Split of a vertex and a face: the face's vertices belong to the second feature.
 pub(super) const VERTEX_AND_FACE: usize = 1;

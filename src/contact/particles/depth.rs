@@ -7,7 +7,7 @@ use crate::{cloth::ClothParticles, contact::colliders::ColliderShape};
 /// The penetration of the deepest free particle into a shape (m), with the shape's pose in the cloth's frame; 0 if none
 /// is inside.
 ///
-/// For a geometry, parry computes the depth in f32.
+/// For a geometry, parry computes the depth in f32. A mesh that deforms is as at the end of the tick.
 pub fn deepest_penetration(
     particles: &ClothParticles,
     shape: &ColliderShape,
@@ -24,6 +24,10 @@ pub fn deepest_penetration(
         ColliderShape::Geometry(geometry) => {
             let local = seen_from(pose, position).as_vec3();
             f64::from(geometry.nearest(local, f32::MAX).distance)
+        }
+        ColliderShape::Deforming(mesh) => {
+            let local = seen_from(pose, position).as_vec3();
+            f64::from(mesh.nearest(1.0, local).distance)
         }
         _ => core.distance(position),
     };

@@ -105,14 +105,18 @@ pub(crate) fn survey(
     sums: &mut Sums,
 ) -> bool {
     let [sx, sy, sz] = motion.slide;
-    let slow = motion.most - motion.swing;
-    let slow = if slow > 0.0 { slow * slow } else { -1.0 };
     let (mut deepest, mut size) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     let mut is_unusual = [0_u32; LANES];
     for l in 0..LANES {
         let is_free = view[W + l] > 0.0;
         let depth = near.depth[l];
-        let (x, y, z) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
+        let slow = motion.most - (motion.swing + near.swing[l]);
+        let slow = if slow > 0.0 { slow * slow } else { -1.0 };
+        let (x, y, z) = (
+            view[DX + l] - (sx + near.surface[0][l]),
+            view[DY + l] - (sy + near.surface[1][l]),
+            view[DZ + l] - (sz + near.surface[2][l]),
+        );
         let is_fast = x * x + y * y + z * z > slow;
         let is_deep = depth > motion.deepest;
         is_unusual[l] = if is_free & (is_fast | is_deep) { 1 } else { 0 };
@@ -164,7 +168,8 @@ fn leave_out(
     let slide = Vec3::from(motion.slide);
     for l in (0..LANES).filter(|&l| is_unusual[l] != 0) {
         let displacement = Vec3::new(view[DX + l], view[DY + l], view[DZ + l]);
-        let speed = (displacement - slide).length() + motion.swing;
+        let surface = slide + Vec3::from([0, 1, 2].map(|axis| near.surface[axis][l]));
+        let speed = (displacement - surface).length() + (motion.swing + near.swing[l]);
         let is_met = speed > motion.most && near.bound[l] + speed > -motion.tolerance;
         if near.depth[l] > motion.deepest || (is_met && motion.is_swept) {
             contact.left |= 1 << l;
@@ -194,6 +199,11 @@ pub(crate) fn push(
         let gap = depth - motion.particle_radius;
         let (ax, ay, az) = (px + nx * gap - ox, py + ny * gap - oy, pz + nz * gap - oz);
         let [sx, sy, sz] = motion.of_surface([ax, ay, az]);
+        let (sx, sy, sz) = (
+            sx + near.surface[0][l],
+            sy + near.surface[1][l],
+            sz + near.surface[2][l],
+        );
         let (rx, ry, rz) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
         let apart = nx * rx + ny * ry + nz * rz;
         let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);

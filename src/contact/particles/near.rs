@@ -41,6 +41,10 @@ pub(crate) struct Near {
     /// Direction away from the shape, of any length.
     pub offset: [Lanes; 3],
     pub length: Lanes,
+    /// Displacement of the surface there in the sub-step by deformation (m), and the largest of the surface elsewhere that may
+    /// come near.
+    pub surface: [Lanes; 3],
+    pub swing: Lanes,
 }
 
 #[inline(always)]
@@ -134,5 +138,7 @@ impl Near {
         bound: [0.0; LANES],
         offset: [[0.0; LANES]; 3],
         length: [0.0; LANES],
+        surface: [[0.0; LANES]; 3],
+        swing: [0.0; LANES],
     };
 }

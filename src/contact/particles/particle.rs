@@ -58,7 +58,7 @@ impl ContactResult {
 }
 
 /// Pushes particles out that are inside `collider`, or that passed through it in this sub-step. Pinned particles do not
-/// move. `planes` are those of the cloth's blocks; only a [`ColliderShape::Geometry`] needs any.
+/// move. `planes` are those of the cloth's blocks; only a shape whose nearest point is expensive needs any.
 pub(crate) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
@@ -72,7 +72,7 @@ pub(crate) fn push_particles(
     let blocks = particles.blocks_mut();
     let shape = &of.collider.shape;
     if shape.is_geometry() {
-        let frame = Frame::new(pose, motion.particle_radius, tick);
+        let frame = Frame::new(of, motion.particle_radius, tick);
         find_planes(blocks, contacts, planes, (shape, &frame, motion));
         push_planes(blocks, contacts, planes, (&frame, motion), &mut sums);
     } else {
@@ -165,7 +165,7 @@ fn push_lanes(
             };
             push_half_space(blocks, contacts, &half_space, motion, sums);
         }
-        ColliderShape::Geometry(_) => {}
+        ColliderShape::Geometry(_) | ColliderShape::Deforming(_) => {}
     }
 }
 
@@ -199,7 +199,7 @@ fn push_left(
             let Nearest {
                 distance,
                 mut normal,
-            } = shape.nearest(of.pose, position);
+            } = of.nearest(position);
             let mut depth = particle_radius - distance;
             let hit = hit(of, settings, [position, displacement]);
             if let Some((hit_normal, hit_depth)) = hit {
@@ -222,7 +222,7 @@ fn push_left(
             let mut pushed = position + push.position;
             if hit.is_some() && shape.is_geometry() {
                 // Another part of it may be in front of the one that was hit.
-                let Nearest { distance, normal } = shape.nearest(of.pose, pushed);
+                let Nearest { distance, normal } = of.nearest(pushed);
                 pushed += normal * (particle_radius - distance).max(0.0);
             }
             let block = &mut particles.blocks_mut()[contact.block as usize];

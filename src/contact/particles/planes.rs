@@ -3,7 +3,7 @@
 //! A particle's distance is a statement about positions: having moved by less since, it cannot touch, however much time
 //! has passed. One that touched is tested against the same plane while it hardly moves, in that tick.
 
-use bevy::math::{Isometry3d, Mat3, Vec3};
+use bevy::math::{Mat3, Vec3};
 use multiversion::multiversion;
 
 use super::{
@@ -12,7 +12,10 @@ use super::{
 };
 use crate::{
     cloth::{Block, LANES, Lanes, View, W, X, Y, Z},
-    contact::{candidates::ContactBlock, colliders::ColliderShape},
+    contact::{
+        candidates::ContactBlock,
+        colliders::{ColliderShape, ColliderSubstep},
+    },
 };
 
 /// A particle that has moved less than this fraction of its radius is tested against the last plane. For a flat surface
@@ -27,6 +30,10 @@ pub(crate) struct Planes {
     /// Its distance then (m), and the plane's normal.
     distance: Lanes,
     normal: [Lanes; 3],
+    /// Displacement of the surface there in the tick, in a shape that deforms (m), and the fraction of the tick at which it was
+    /// found.
+    surface: [Lanes; 3],
+    since: Lanes,
     /// Displacement up to which the plane is reused (m); negative if the particle did not touch it in this tick.
     same: Lanes,
     /// The tick of that.
@@ -41,6 +48,11 @@ pub(crate) struct Frame {
     /// Radius of a particle, and its displacement up to which a plane is reused (m).
     reach: f32,
     same: f32,
+    /// The fraction of the tick that has passed, and that of the sub-step.
+    passed: f32,
+    part: f32,
+    /// Largest displacement of the surface in the sub-step by deformation (m).
+    deformation: f32,
     tick: u32,
 }
 
@@ -49,6 +61,8 @@ impl Planes {
         at: [[f32::NAN; LANES]; 3],
         distance: [f32::INFINITY; LANES],
         normal: [[0.0; LANES], [1.0; LANES], [0.0; LANES]],
+        surface: [[0.0; LANES]; 3],
+        since: [0.0; LANES],
         same: [-1.0; LANES],
         tick: 0,
     };
@@ -57,19 +71,24 @@ impl Planes {
     fn find(&mut self, lane: usize, shape: &ColliderShape, local: Vec3, frame: &Frame) {
         let known = Vec3::from([0, 1, 2].map(|axis| self.at[axis][lane]));
         let within = self.distance[lane].abs() + local.distance(known);
-        let nearest = shape.nearest_within(local, within * (1.0 + 1.0e-3) + 1.0e-3);
+        let within = within * (1.0 + 1.0e-3) + 1.0e-3;
+        let (nearest, surface) = match shape {
+            ColliderShape::Deforming(mesh) => mesh.moving_nearest(frame.passed, local),
+            shape => (shape.nearest_within(local, within), Vec3::ZERO),
+        };
         let is_touching = nearest.distance <= frame.reach;
-        let beside = if is_touching {
-            f32::INFINITY
-        } else {
-            shape.distance_beside_ground(local)
+        let beside = match shape {
+            _ if is_touching => f32::INFINITY,
+            ColliderShape::Deforming(mesh) => mesh.clearance(frame.passed, local, surface),
+            shape => shape.distance_beside_ground(local),
         };
         self.distance[lane] = nearest.distance.min(beside);
         self.same[lane] = if is_touching { frame.same } else { -1.0 };
-        let (at, normal) = (local.to_array(), nearest.normal.to_array());
+        self.since[lane] = frame.passed;
         for axis in 0..3 {
-            self.at[axis][lane] = at[axis];
-            self.normal[axis][lane] = normal[axis];
+            self.at[axis][lane] = local[axis];
+            self.normal[axis][lane] = nearest.normal[axis];
+            self.surface[axis][lane] = surface[axis];
         }
     }
 }
@@ -85,12 +104,16 @@ impl Planes {
 }
 
 impl Frame {
-    pub fn new(pose: Isometry3d, particle_radius: f32, tick: u32) -> Self {
+    pub fn new(of: &ColliderSubstep, particle_radius: f32, tick: u32) -> Self {
+        let pose = of.pose;
         Self {
             centre: Vec3::from(pose.translation).to_array(),
             axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
             reach: particle_radius,
             same: SAME_PLANE * particle_radius,
+            passed: of.substep.end(),
+            part: 1.0 / of.substep.count as f32,
+            deformation: of.deformation,
             tick,
         }
     }
@@ -100,7 +123,7 @@ impl Frame {
 struct Moved {
     /// Its position in the shape's frame (m).
     at: [f32; 3],
-    /// Its displacement since its plane was found (m), and the length of that.
+    /// Its displacement since its plane was found, relative to that (m), and the length of that.
     offset: [f32; 3],
     length: f32,
     /// Lower bound of its distance (m).
@@ -112,10 +135,11 @@ fn moved(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
     let [cx, cy, cz] = frame.centre;
     let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
     let at = frame.axes.map(|[u, v, w]| x * u + y * v + z * w);
+    let passed = frame.passed - planes.since[l];
     let offset = [
-        at[0] - planes.at[0][l],
-        at[1] - planes.at[1][l],
-        at[2] - planes.at[2][l],
+        at[0] - (planes.at[0][l] + planes.surface[0][l] * passed),
+        at[1] - (planes.at[1][l] + planes.surface[1][l] * passed),
+        at[2] - (planes.at[2][l] + planes.surface[2][l] * passed),
     ];
     let [a, b, c] = offset;
     let length = (a * a + b * b + c * c).sqrt();
@@ -190,6 +214,20 @@ fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
         near.offset[1][l] = u[1] * na + v[1] * nb + w[1] * nc;
         near.offset[2][l] = u[2] * na + v[2] * nb + w[2] * nc;
         near.length[l] = 1.0;
+        let is_far = moved.least > frame.reach;
+        near.swing[l] = if is_far | is_same {
+            0.0
+        } else {
+            frame.deformation
+        };
+        let (a, b, c) = (
+            planes.surface[0][l] * frame.part,
+            planes.surface[1][l] * frame.part,
+            planes.surface[2][l] * frame.part,
+        );
+        near.surface[0][l] = u[0] * a + v[0] * b + w[0] * c;
+        near.surface[1][l] = u[1] * a + v[1] * b + w[1] * c;
+        near.surface[2][l] = u[2] * a + v[2] * b + w[2] * c;
     }
     near
 }

@@ -8,7 +8,7 @@ use crate::{
     cloth::{Block, ClothParticles, LANES, Layout},
     contact::{
         candidates::ContactBlock,
-        colliders::{ClothCollider, ColliderShape},
+        colliders::{ClothCollider, ColliderShape, MovingCollider, nearest},
         friction::{FrictionBudget, PushOut},
         particles::{
             Cuboid, Frame, HalfSpace, LaneMotion, Planes, Round, Sums, find_planes, push_cuboid,
@@ -16,10 +16,11 @@ use crate::{
             push_planes_baseline, push_round, push_round_baseline,
         },
         triangles::{
-            CapsuleCore, Cells, Place, hold_all, hold_all_baseline, nearest, nearest_of_each,
-            push_cells, push_cells_baseline,
+            CapsuleCore, Cells, Place, hold_all, hold_all_baseline, nearest_of_each, push_cells,
+            push_cells_baseline,
         },
     },
+    solver::SubStep,
 };
 
 const BLOCKS: u32 = 12;
@@ -132,7 +133,9 @@ proptest! {
             contact.lanes = u8::MAX;
         }
         let motion = motion(&mut random);
-        let (hull, frame) = (hull(), Frame::new(random.pose(0.2), 0.05, 1));
+        let hull = hull();
+        let still = MovingCollider::still(hull.clone(), random.pose(0.2));
+        let frame = Frame::new(&still.in_substep(SubStep::first_of(4)), 0.05, 1);
         let mut planes = [Planes::UNKNOWN; BLOCKS as usize];
         find_planes(&blocks, &contacts, &mut planes, (&hull, &frame, &motion));
         let (mut others, mut met) = (blocks.clone(), contacts.clone());

@@ -2,6 +2,8 @@
 
 mod body;
 mod deep;
+#[cfg(feature = "mesh")]
+mod deforming;
 mod edges;
 mod fast;
 mod geometry;

@@ -19,7 +19,7 @@ fn inside(random: &mut Random, collider: &MovingCollider, part: f32, beyond: f32
             along + random.direction() * radius * random.part().sqrt()
         }
         ColliderShape::Cuboid { half_size } => random.within(1.0) * half_size,
-        ColliderShape::Geometry(_) => Vec3::ZERO,
+        ColliderShape::Geometry(_) | ColliderShape::Deforming(_) => Vec3::ZERO,
         ColliderShape::HalfSpace => {
             let point = random.within(beyond);
             Vec3::new(point.x, -point.y.abs() * random.part(), point.z)

@@ -4,10 +4,7 @@ use bevy::math::{Isometry3d, Vec3};
 use proptest::prelude::*;
 
 use super::random::{Random, cases};
-use crate::contact::{
-    colliders::{ClothCollider, ColliderShape},
-    triangles::at,
-};
+use crate::contact::colliders::{ClothCollider, ColliderShape, at};
 
 fn shape(collider: &ClothCollider) -> ColliderShape {
     collider.scaled(Vec3::ONE).expect("a valid collider")

@@ -6,7 +6,7 @@ use bevy::math::{DVec3, Vec3};
 use proptest::prelude::*;
 
 use super::random::{Random, cases};
-use crate::contact::triangles::{area_within, at, nearest, nearest_to_point};
+use crate::contact::colliders::{area_within, at, nearest, nearest_to_point};
 
 /// Samples an edge.
 const SAMPLES: usize = 24;

@@ -11,8 +11,7 @@ use crate::{
     cloth::{ClothParticles, Surface},
     contact::{
         candidates::{ContactSettings, NarrowPhase},
-        colliders::MovingCollider,
-        triangles::nearest,
+        colliders::{MovingCollider, nearest},
     },
 };
 

@@ -2,12 +2,11 @@
 
 use bevy::math::{Isometry3d, Vec3};
 
-use super::triangle::{NearestPoints, at, nearest};
 use crate::{
     cloth::{Block, ClothParticles, Slot, Surface},
     contact::{
         candidates::ContactSettings,
-        colliders::{ColliderSubstep, MovingCollider},
+        colliders::{ColliderSubstep, MovingCollider, NearestPoints, at, nearest},
         friction::first_touch,
     },
     hierarchy::{Core, Probe},

@@ -4,10 +4,10 @@ use std::f32::consts::PI;
 
 use bevy::math::Vec3;
 
-use super::triangle::cap;
 use crate::{
     cloth::{DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
     contact::{
+        colliders::cap,
         friction::larger,
         particles::{LaneMotion, Sums},
     },

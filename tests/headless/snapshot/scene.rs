@@ -4,7 +4,10 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
 use crate::{
-    characters::rig::{bind, rig},
+    characters::{
+        arm::{By, ELBOW, Worn, angle, dress, spawn_arm},
+        rig::{bind, rig},
+    },
     meshes::sheets::{sheet, sheet_asset},
     support::*,
 };
@@ -64,7 +67,7 @@ fn once(at: Vec3, velocity: Vec3, seconds: f32) -> Transform {
 }
 
 /// An app with cloths of every kind: swinging, creasing, asleep on a ball and woken, attached, holding a tolerance, teleported, in layers, on a
-/// body, in gusts, below a root that carries it, at a lower rate, on a skeleton, before a fan that comes by, full of gas. The same entities each time.
+/// body, in gusts, below a root that carries it, at a lower rate, on a skeleton, on an arm that bends, before a fan that comes by, full of gas. The same entities each time.
 pub fn everything() -> (App, Vec<Entity>) {
     everything_after(0)
 }
@@ -196,6 +199,9 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     let skin = ClothSkin::within(ClothPaint::at_rest(|place| place.z)).with_backstop(0.05, 0.4);
     let rig = rig(&mut app, (skin, still));
     cloths.push(rig.cloth);
+    // And one that falls on an arm that bends.
+    let arm = spawn_arm(&mut app, By::Mesh, at(180.0, 0.0, 0.0));
+    cloths.push(dress(&mut app, &arm, Worn::Sheet, still));
     let walks: [fn(f32) -> Transform; 3] = [|t| swing(0, t), |t| swing(1, t), |t| swing(2, t)];
     let mut insert = |entity: Entity, moves: fn(f32) -> Transform| {
         let bundle = (Moves(moves), moves(0.0));
@@ -204,6 +210,10 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     for (bone, walks) in rig.bones.into_iter().zip(walks) {
         insert(bone, walks);
     }
+    insert(arm.joints[1], |t| {
+        let bent = Quat::from_rotation_z(angle(1.5, 1.0, t));
+        Transform::from_xyz(ELBOW, 0.0, 0.0).with_rotation(bent)
+    });
     insert(rig.root, |t| {
         Transform::from_xyz(170.0 + 0.3 * t.sin(), 0.0, 0.2 * t)
     });

@@ -121,7 +121,7 @@ impl<'a> ContactStep<'a> {
                 continue;
             }
             let (place, before) = (block.position(lane), block.displacement(lane));
-            let normal = ground.collider.shape.nearest(ground.pose, place).normal;
+            let normal = ground.nearest(place).normal;
             let most = friction * share * inverse_mass;
             let slowed = before - grip(before - moving.surface_motion(place), normal, most);
             let after = slowed - grip(slowed - ground.surface_motion(place), normal, most);

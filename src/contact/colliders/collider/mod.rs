@@ -84,7 +84,8 @@ pub enum ClothCollider {
         /// Half of its height (m), before the transform's scale.
         half_height: f32,
     },
-    /// The entity's `Mesh3d`, once its asset has loaded; needs feature `mesh`.
+    /// The entity's `Mesh3d`, once its asset has loaded; needs feature `mesh`. If the entity has a `SkinnedMesh`, the triangles
+    /// follow its joints, wherever the entity is.
     Mesh(MeshCollider),
     /// Several shapes, each with a pose in the entity's frame (m).
     Compound(Vec<(Isometry3d, Self)>),
@@ -99,10 +100,11 @@ pub enum ClothCollider {
 #[reflect(Default, Debug, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum MeshCollider {
-    /// Its triangles. A closed mesh has an outer side only; an open mesh has two sides.
+    /// Its triangles. A closed mesh has an outer side only; an open mesh has two sides. A skinned mesh has an outer side, open or
+    /// closed: the one from which the corners of a triangle run counter-clockwise.
     #[default]
     Triangles,
-    /// The convex hull of its vertices: cheaper, and exact for a convex mesh.
+    /// The convex hull of its vertices: cheaper, and exact for a convex mesh. It is rigid, even if the mesh is skinned.
     Hull,
 }
 
@@ -182,7 +184,7 @@ impl ClothCollider {
         Self::Compound(parts.into_iter().collect())
     }
 
-    /// The triangles of the entity's `Mesh3d`, once it has loaded.
+    /// The triangles of the entity's `Mesh3d`, once it has loaded. They follow the joints of a `SkinnedMesh`.
     pub const fn mesh() -> Self {
         Self::Mesh(MeshCollider::Triangles)
     }
@@ -363,6 +365,7 @@ fn compound(
                 continue;
             }
             ColliderShape::HalfSpace => return no_such("a plane in a compound"),
+            ColliderShape::Deforming(_) => return no_such("a mesh that deforms in a compound"),
             ColliderShape::Ball { radius } => SharedShape::ball(radius),
             ColliderShape::Capsule {
                 radius,

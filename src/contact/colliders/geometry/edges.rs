@@ -119,15 +119,15 @@ impl SharpEdges {
 
 /// A side of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Side {
+pub(in crate::contact::colliders) struct Side {
     /// Its vertices, the smaller first.
-    vertices: [u32; 2],
-    is_forward: bool,
-    face: u32,
+    pub vertices: [u32; 2],
+    pub is_forward: bool,
+    pub face: u32,
 }
 
 /// The sides of all triangles of a mesh, sorted by edge.
-pub(super) struct MeshEdges(Vec<Side>);
+pub(in crate::contact::colliders) struct MeshEdges(Vec<Side>);
 
 impl MeshEdges {
     pub fn of(triangles: &[[u32; 3]]) -> Self {
@@ -146,7 +146,8 @@ impl MeshEdges {
         Self(sides)
     }
 
-    fn edges(&self) -> impl Iterator<Item = &[Side]> {
+    /// The sides of each edge.
+    pub fn edges(&self) -> impl Iterator<Item = &[Side]> {
         self.0.chunk_by(|a, b| a.vertices == b.vertices)
     }
 

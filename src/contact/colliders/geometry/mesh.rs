@@ -27,17 +27,15 @@ pub(crate) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothError> {
     }
 }
 
-/// A mesh of triangles, solid if it is closed. An inside-out mesh is flipped.
+/// Checks that all triangles are of these vertices, and that one of them has an area.
 ///
 /// # Errors
 /// For a vertex that is not finite or missing, and if no triangle has an area.
-pub(crate) fn build(
-    mut vertices: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-    ground: bool,
-) -> Result<Built, ClothError> {
-    check_vertices(&vertices)?;
-    let count = triangles.len();
+pub(in crate::contact::colliders) fn check_triangles(
+    vertices: &[Vec3],
+    triangles: &[[u32; 3]],
+) -> Result<(), ClothError> {
+    check_vertices(vertices)?;
     let is_beyond = |triangle: &[u32; 3]| {
         triangle
             .iter()
@@ -50,8 +48,6 @@ pub(crate) fn build(
             vertices: vertices.len(),
         });
     }
-    // Merges equal vertices: −0 equals 0.
-    vertices.iter_mut().for_each(|vertex| *vertex += Vec3::ZERO);
     let area: f32 = triangles
         .iter()
         .map(|triangle| {
@@ -59,15 +55,32 @@ pub(crate) fn build(
             (b - a).cross(c - a).length()
         })
         .sum();
-    let without_area = ClothError::MeshWithoutArea { triangles: count };
     if area <= 0.0 {
-        return Err(without_area);
+        return Err(ClothError::MeshWithoutArea {
+            triangles: triangles.len(),
+        });
     }
+    Ok(())
+}
+
+/// A mesh of triangles, solid if it is closed. An inside-out mesh is flipped.
+///
+/// # Errors
+/// For a vertex that is not finite or missing, and if no triangle has an area.
+pub(crate) fn build(
+    mut vertices: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    ground: bool,
+) -> Result<Built, ClothError> {
+    let count = triangles.len();
+    check_triangles(&vertices, &triangles)?;
+    // Merges equal vertices: −0 equals 0.
+    vertices.iter_mut().for_each(|vertex| *vertex += Vec3::ZERO);
     let welded = TriMeshFlags::MERGE_DUPLICATE_VERTICES
         | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
         | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
     let Ok(mut mesh) = TriMesh::with_flags(vertices, triangles, welded) else {
-        return Err(without_area);
+        return Err(ClothError::MeshWithoutArea { triangles: count });
     };
     let edges = MeshEdges::of(mesh.indices());
     let sides = if ground {
@@ -77,7 +90,7 @@ pub(crate) fn build(
     } else {
         MeshSides::Open
     };
-    if sides == MeshSides::Closed && volume(&mesh) < 0.0 {
+    if sides == MeshSides::Closed && volume(mesh.vertices(), mesh.indices()) < 0.0 {
         mesh.reverse();
     }
     if sides != MeshSides::Open {
@@ -88,13 +101,13 @@ pub(crate) fn build(
     Ok((mesh, sides, sharp))
 }
 
-/// The volume of a closed mesh (m³), negative if it is inside out.
-pub(crate) fn volume(mesh: &TriMesh) -> f64 {
-    // Relative to its middle, as it may be far from the origin.
-    let middle = mesh.local_aabb().center().as_dvec3();
-    let parts = mesh.indices().iter().map(|triangle| {
+/// The volume inside of closed triangles (m³), negative if they are inside out.
+pub(in crate::contact::colliders) fn volume(vertices: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    // Relative to one of them, as they may be far from the origin.
+    let middle = vertices.first().copied().unwrap_or_default().as_dvec3();
+    let parts = triangles.iter().map(|triangle| {
         let [a, b, c]: [DVec3; 3] =
-            triangle.map(|corner| mesh.vertices()[corner as usize].as_dvec3() - middle);
+            triangle.map(|corner| vertices[corner as usize].as_dvec3() - middle);
         a.dot(b.cross(c)) / 6.0
     });
     parts.sum()

@@ -9,10 +9,14 @@ use std::sync::Arc;
 
 use super::nearest::Nearest;
 use bevy::{math::Vec3, reflect::Reflect};
+pub(super) use edges::MeshEdges;
 pub(crate) use edges::SharpEdge;
 use edges::SharpEdges;
+#[cfg(feature = "mesh")]
+pub(super) use mesh::{check_triangles, volume};
 use parry3d::{math::Pose, shape::Shape};
 pub(crate) use parts::{Parts, turn_up};
+pub(super) use solid::towards;
 use solid::{Solid, SolidKind};
 
 /// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed

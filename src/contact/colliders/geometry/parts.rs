@@ -68,7 +68,9 @@ impl Parts {
         let points = triangles.0.len();
         let (mesh, sides, edges) = mesh::build(triangles.0, triangles.1, false)?;
         let size = mesh.local_aabb().extents().as_dvec3().max_element();
-        if sides != MeshSides::Closed || mesh::volume(&mesh) <= 1.0e-9 * size.powi(3) {
+        if sides != MeshSides::Closed
+            || mesh::volume(mesh.vertices(), mesh.indices()) <= 1.0e-9 * size.powi(3)
+        {
             return Err(ClothError::FlatHull { points });
         }
         self.add_built(pose, mesh.into(), sides);

@@ -119,7 +119,12 @@ fn nearest_of_mesh(mesh: &TriMesh, sides: MeshSides, point: Vec3, within: f32) -
 
 /// The [`Nearest`] of a point to a surface whose nearest point is known. `fallback` is the normal of a point on the
 /// surface.
-fn towards(point: Vec3, surface: Vec3, is_inside: bool, fallback: Vec3) -> Nearest {
+pub(in crate::contact::colliders) fn towards(
+    point: Vec3,
+    surface: Vec3,
+    is_inside: bool,
+    fallback: Vec3,
+) -> Nearest {
     let offset = point - surface;
     let distance = offset.length();
     // A shorter distance is only rounding.

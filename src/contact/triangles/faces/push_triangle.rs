@@ -6,11 +6,11 @@ use super::{ResumePoint, TrianglePush};
 use crate::{
     cloth::{ClothParticles, Slot},
     contact::{
+        colliders::{at, cap},
         friction::{Contact, PushOut},
         triangles::{
             corners::{CoreMotion, Corners, Touching},
             lanes::MAX_SHARE,
-            triangle::{at, cap},
         },
     },
 };

@@ -206,7 +206,7 @@ impl ClothWorldSnapshot {
         }
         for (entity, memory) in &self.colliders {
             if let Some(mut motion) = world.get_mut::<ColliderMotion>(*entity) {
-                motion.recall(*memory);
+                motion.recall(memory.clone());
             }
         }
         for (entity, last) in &self.roots {

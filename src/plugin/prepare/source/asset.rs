@@ -12,7 +12,10 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothError, ClothShape, Skinning, Surface, TriangleMesh, skin_of_asset},
+    cloth::{
+        Cloth, ClothError, ClothShape, JointWeights, Skinning, Surface, TriangleMesh, skin_of_asset,
+    },
+    contact::SkinnedTriangles,
     plugin::{
         authoring::ClothMesh,
         state::{Recipe, Source},
@@ -33,6 +36,17 @@ impl ChangedMeshes {
     pub fn forget(&mut self, mesh: AssetId<Mesh>) {
         self.0.remove(&mesh);
     }
+}
+
+/// The joints and weights of a mesh's vertices.
+///
+/// # Errors
+/// [`ClothError::SkinJoints`] if it names no joints.
+fn skin_of(mesh: &Mesh) -> Result<Vec<JointWeights>, ClothError> {
+    skin_of_asset(mesh)?.ok_or(ClothError::SkinJoints {
+        needed: 1,
+        joints: 0,
+    })
 }
 
 /// The assets, if the app has any.
@@ -121,12 +135,22 @@ impl Sources<'_, '_> {
             .meshes
             .as_ref()
             .and_then(|meshes| meshes.get(source.mesh));
-        let mesh = mesh.ok_or(ClothError::MeshNotLoaded)?;
-        let skin = skin_of_asset(mesh)?.ok_or(ClothError::SkinJoints {
-            needed: 1,
-            joints: 0,
-        })?;
+        let skin = skin_of(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
         Skinning::new(surface, &self.triangles(source.mesh)?.positions, &skin)
+    }
+
+    /// The triangles of a skinned mesh, bound to its joints.
+    ///
+    /// # Errors
+    /// As for [`skinning`](Self::skinning).
+    pub fn skinned(&self, source: Source) -> Result<SkinnedTriangles, ClothError> {
+        let mesh = self
+            .meshes
+            .as_ref()
+            .and_then(|meshes| meshes.get(source.mesh));
+        let skin = skin_of(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
+        let mesh = self.triangles(source.mesh)?;
+        SkinnedTriangles::new(&mesh.positions, &mesh.triangles, &skin)
     }
 
     /// The triangles of a recipe that is made from an asset; none of any other.

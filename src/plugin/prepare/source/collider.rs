@@ -1,6 +1,6 @@
 //! Colliders that are made from drawn meshes.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use bevy::{
     asset::AssetId,
@@ -9,6 +9,7 @@ use bevy::{
         resource::Resource,
         system::{Query, Res, SystemParam},
     },
+    math::Affine3A,
     mesh::{Mesh, Mesh3d},
     platform::collections::HashMap,
 };
@@ -16,25 +17,38 @@ use bevy::{
 use super::asset::Sources;
 use crate::{
     cloth::ClothError,
-    contact::{ClothCollider, MeshCollider},
-    plugin::state::Source,
+    contact::{ClothCollider, MeshCollider, SkinnedTriangles},
+    plugin::{frame::Places, prepare::skin::Skins, state::Source},
 };
 
 /// The colliders that have been made from meshes, shared by all entities with the same mesh.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct SharedMeshes(Mutex<HashMap<(Source, MeshCollider), ClothCollider>>);
+pub(crate) struct SharedMeshes {
+    rigid: Mutex<HashMap<(Source, MeshCollider), ClothCollider>>,
+    skinned: Mutex<HashMap<Source, Arc<SkinnedTriangles>>>,
+}
 
 impl SharedMeshes {
     /// The meshes that colliders have been made from, as long as they are used.
     pub fn meshes(&mut self) -> impl Iterator<Item = AssetId<Mesh>> {
-        let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
-        shared.keys().map(|(source, _)| source.mesh)
+        let rigid = self.rigid.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let skinned = self
+            .skinned
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
+        let rigid = rigid.keys().map(|(source, _)| source.mesh);
+        rigid.chain(skinned.keys().map(|source| source.mesh))
     }
 
     /// The mesh is no longer used.
     pub fn forget(&mut self, mesh: AssetId<Mesh>) {
-        let shared = self.0.get_mut().unwrap_or_else(PoisonError::into_inner);
-        shared.retain(|(known, _), _| known.mesh != mesh);
+        let rigid = self.rigid.get_mut().unwrap_or_else(PoisonError::into_inner);
+        rigid.retain(|(known, _), _| known.mesh != mesh);
+        let skinned = self
+            .skinned
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
+        skinned.retain(|known, _| known.mesh != mesh);
     }
 }
 
@@ -43,6 +57,7 @@ impl SharedMeshes {
 pub(crate) struct ColliderMeshes<'w, 's> {
     meshes: Query<'w, 's, &'static Mesh3d>,
     sources: Sources<'w, 's>,
+    skins: Skins<'w, 's>,
     shared: Res<'w, SharedMeshes>,
 }
 
@@ -67,6 +82,44 @@ impl ColliderMeshes<'_, '_> {
         self.sources.loaded(mesh.0.id(), known).map(Some)
     }
 
+    /// The transforms of the joints that move a collider's triangles, from the mesh to the world; none if it is rigid.
+    ///
+    /// # Errors
+    /// The error of the joints.
+    pub fn joints(
+        &self,
+        entity: Entity,
+        collider: &ClothCollider,
+        places: &Places,
+        joints: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        joints.clear();
+        match collider {
+            ClothCollider::Mesh(MeshCollider::Triangles) => {
+                let place = |joint| places.of(joint).ok();
+                self.skins.read(entity, place, joints)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The triangles of a skinned mesh.
+    ///
+    /// # Errors
+    /// The error of the mesh.
+    pub fn skinned(&self, source: Source) -> Result<Arc<SkinnedTriangles>, ClothError> {
+        let shared = self.shared.skinned.lock();
+        let mut shared = shared.unwrap_or_else(PoisonError::into_inner);
+        if let Some(made) = shared.get(&source) {
+            return Ok(made.clone());
+        }
+        let made = Arc::new(self.sources.skinned(source)?);
+        // Those of older versions of the mesh are no longer needed.
+        shared.retain(|known, _| known.mesh != source.mesh);
+        shared.insert(source, made.clone());
+        Ok(made)
+    }
+
     /// The collider with its triangles, or its points; itself, if it is made of no mesh.
     ///
     /// # Errors
@@ -79,7 +132,8 @@ impl ColliderMeshes<'_, '_> {
         let (ClothCollider::Mesh(kind), Some(source)) = (collider, source) else {
             return Ok(collider.clone());
         };
-        let mut shared = self.shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let shared = self.shared.rigid.lock();
+        let mut shared = shared.unwrap_or_else(PoisonError::into_inner);
         if let Some(made) = shared.get(&(source, *kind)) {
             return Ok(made.clone());
         }

@@ -1,13 +1,19 @@
 //! Without Bevy's meshes nothing is made from an asset.
 
-use std::marker::PhantomData;
+use std::{marker::PhantomData, sync::Arc};
 
-use bevy::ecs::{entity::Entity, system::SystemParam};
+use bevy::{
+    ecs::{entity::Entity, system::SystemParam},
+    math::Affine3A,
+};
 
 use crate::{
     cloth::{Cloth, ClothError, Skinning, Surface, TriangleMesh},
-    contact::ClothCollider,
-    plugin::state::{Recipe, Source},
+    contact::{ClothCollider, SkinnedTriangles},
+    plugin::{
+        frame::Places,
+        state::{Recipe, Source},
+    },
 };
 
 /// No assets.
@@ -53,6 +59,23 @@ impl ColliderMeshes<'_> {
         _: Option<Source>,
     ) -> Result<Option<Source>, ClothError> {
         Ok(None)
+    }
+
+    /// No collider has joints.
+    pub fn joints(
+        &self,
+        _: Entity,
+        _: &ClothCollider,
+        _: &Places,
+        joints: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        joints.clear();
+        Ok(())
+    }
+
+    /// There is no mesh to be skinned.
+    pub fn skinned(&self, source: Source) -> Result<Arc<SkinnedTriangles>, ClothError> {
+        match source {}
     }
 
     /// The collider itself.

@@ -1,8 +1,10 @@
 //! How colliders move from tick to tick.
 
+mod skinned;
+
 use bevy::{
     ecs::{component::Component, entity::Entity},
-    math::{Isometry3d, Mat3, Quat, Vec3, Vec3A},
+    math::{Affine3A, Isometry3d, Mat3, Quat, Vec3, Vec3A},
 };
 
 use super::{stay::Stay, tree::Bounds};
@@ -17,6 +19,7 @@ use crate::{
         state::Source,
     },
 };
+use skinned::Skinned;
 
 /// Margin of a box against rounding of its corners and of the collider's points.
 const ROUNDING: f32 = 1.0e-5;
@@ -30,6 +33,9 @@ pub(crate) struct ColliderMotion {
     last: Option<Isometry3d>,
     /// The same, a tick earlier.
     before: Option<Isometry3d>,
+    /// Transforms of the joints of a skinned mesh after that tick, from the mesh to the frame of `last`, and now.
+    joints: Vec<Affine3A>,
+    joints_now: Vec<Affine3A>,
     /// How long it has been where it is, if it is a body.
     stay: Stay,
     /// Middle of its path (m), and the largest distance from there to any of the collider's points on it.
@@ -46,10 +52,11 @@ pub(crate) struct ColliderMotion {
 }
 
 /// The inputs of a collider's next path, besides its place then.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ColliderMemory {
     last: Option<Isometry3d>,
+    joints: Vec<Affine3A>,
     cloths: u32,
     stay: Stay,
 }
@@ -63,6 +70,8 @@ struct BuiltShape {
     shape: ColliderShape,
     /// The shape's frame in that of the entity.
     offset: Isometry3d,
+    /// If it is skinned: then the frame is not that of the entity.
+    skinned: Option<Skinned>,
 }
 
 impl BuiltShape {
@@ -70,6 +79,7 @@ impl BuiltShape {
         // A scale that is read out of a rotating transform changes by rounding.
         self.collider == *collider
             && self.source == source
+            && self.skinned.is_none()
             && self.scale.abs_diff_eq(scale, 1.0e-5 * scale.length())
     }
 }
@@ -123,12 +133,34 @@ impl ColliderMotion {
                 collider: collider.clone(),
                 source,
                 scale,
+                skinned: None,
             });
         }
         Ok(())
     }
 
-    /// Reads the current place of its entity.
+    /// Reads the current place of its entity, and its shape.
+    ///
+    /// # Errors
+    /// The error of the collider, or of its transform.
+    fn place(
+        &mut self,
+        collider: &ClothCollider,
+        places: &Places,
+        meshes: &ColliderMeshes,
+        entity: Entity,
+    ) -> Result<Isometry3d, ClothError> {
+        let transform = places.of(entity)?;
+        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+        self.build(collider, meshes, entity, scale)?;
+        let is_far = translation.abs().max_element() > FARTHEST;
+        if is_far || !(translation.is_finite() && rotation.is_finite()) {
+            return Err(unusable(transform.affine()));
+        }
+        Ok(Isometry3d::new(translation, rotation.normalize()))
+    }
+
+    /// Reads the current place of its entity, and the path from there.
     ///
     /// # Errors
     /// The error of the collider, or of its transform.
@@ -141,9 +173,14 @@ impl ColliderMotion {
         entity: Entity,
         time_passes: bool,
     ) -> Result<(), ClothError> {
-        let transform = places.of(entity)?;
-        let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        self.build(collider, meshes, entity, scale)?;
+        let mut joints = std::mem::take(&mut self.joints_now);
+        let skin = meshes.joints(entity, collider, places, &mut joints);
+        self.joints_now = joints;
+        skin?;
+        let place = match self.joints_now.is_empty() {
+            true => self.place(collider, places, meshes, entity)?,
+            false => self.follow_joints(collider, meshes, entity)?,
+        };
         let Some(BuiltShape { shape, offset, .. }) = &self.built else {
             return Ok(());
         };
@@ -157,11 +194,6 @@ impl ColliderMotion {
                 "at most 10¹²",
             )?;
         }
-        let is_far = translation.abs().max_element() > FARTHEST;
-        if is_far || !(translation.is_finite() && rotation.is_finite()) {
-            return Err(unusable(transform.affine()));
-        }
-        let place = Isometry3d::new(translation, rotation.normalize());
         let last = self.last.unwrap_or(place);
         let (from, pose) = (last * *offset, place * *offset);
         let translation = Vec3::from(pose.translation);
@@ -199,6 +231,9 @@ impl ColliderMotion {
         // If it is moved while no time passes, the motion counts in the next tick with time.
         self.last = Some(if time_passes { place } else { last });
         self.before = Some(last);
+        if time_passes || self.joints.is_empty() {
+            self.joints.clone_from(&self.joints_now);
+        }
         Ok(())
     }
 
@@ -221,7 +256,7 @@ impl ColliderMotion {
     pub fn is_moving(&self) -> bool {
         self.moving
             .as_ref()
-            .is_some_and(|moving| moving.turn != Vec3::ZERO || moving.travel() > 0.0)
+            .is_some_and(|moving| moving.max_surface_travel(f32::INFINITY) > 0.0)
     }
 
     /// Whether cloth pushes it.
@@ -293,6 +328,7 @@ impl ColliderMotion {
     pub fn memory(&self) -> ColliderMemory {
         ColliderMemory {
             last: self.last,
+            joints: self.joints.clone(),
             cloths: self.cloths,
             stay: self.stay,
         }
@@ -302,6 +338,7 @@ impl ColliderMotion {
     pub fn recall(&mut self, memory: ColliderMemory) {
         ColliderMemory {
             last: self.last,
+            joints: self.joints,
             cloths: self.cloths,
             stay: self.stay,
         } = memory;
@@ -317,6 +354,7 @@ impl ColliderMotion {
     pub fn stop(&mut self) {
         self.unsettle();
         self.last = None;
+        self.joints.clear();
     }
 
     /// Its bounds along the whole path, for the tree of all colliders.
