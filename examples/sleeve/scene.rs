@@ -169,10 +169,11 @@ fn sew(shop: &mut Workshop, upper: Entity, place: Transform) {
     });
     let top = from.y - 1.0e-3;
     let held = Pin::at_rest(move |at| at.y > top);
+    let mesh = shop.mesh(turned(&profile, rings, TAU));
     shop.commands.spawn((
         Name::new("sleeve"),
         Cloth::mesh(),
-        shop.mesh(turned(&profile, rings, TAU)),
+        mesh,
         Pins::none(),
         ClothAttachments::new([(held, upper)]),
         ClothMaterial::COTTON,

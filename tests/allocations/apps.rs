@@ -140,7 +140,7 @@ fn with_a_box_that_stands(is_table: bool, sleeps: bool) -> usize {
     })
 }
 
-/// What a skinned sheet does.
+/// The use of a skinned sheet.
 #[derive(Clone, Copy, PartialEq)]
 enum Skinned {
     Cloth,

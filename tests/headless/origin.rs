@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
 use crate::{
+    characters::arm::{By, Worn, dress, spawn_arm},
     snapshot::scene::{Origin, everything},
     support::*,
 };
@@ -62,7 +63,7 @@ fn nothing_feels_a_jump_of_the_origin() {
     }
 }
 
-/// What sleeps, on a ball, on cloth, before a fan that stands still or on a skeleton, sleeps through a hundred jumps, with the same bits; what
+/// What sleeps, on a ball, on an arm, on cloth, before a fan that stands still or on a skeleton, sleeps through a hundred jumps, with the same bits; what
 /// is drawn of it is not written again elsewhere.
 #[test]
 fn what_sleeps_sleeps_on() {
@@ -81,7 +82,11 @@ fn what_sleeps_sleeps_on() {
     let vehicle = world.spawn(vehicle).id();
     let corners = || Pins::new([Corner::TopLeft, Corner::TopRight].map(Pin::Corner));
     let lying = || (Cloth::new(9, 9, 0.1).lying().centred(), damped);
+    let arm = spawn_arm(&mut app, By::Mesh, at(0.0, 3.0, 0.0));
+    let sleeve = dress(&mut app, &arm, Worn::Sleeve, damped);
+    let world = app.world_mut();
     let cloths = [
+        sleeve,
         world.spawn((lying(), corners(), at(0.0, 0.0, 0.0))).id(),
         world.spawn((lying(), corners(), at(3.0, 0.0, 1.0))).id(),
         world
@@ -126,7 +131,7 @@ fn what_sleeps_sleeps_on() {
         }
     }
     tick(&mut app, 2);
-    assert!(!stats(&app, cloths[0]).is_asleep);
+    assert!(!stats(&app, cloths[1]).is_asleep);
 }
 
 /// A jump that is none is said, and nothing is changed; a world without cloth has none to shift.

@@ -57,22 +57,22 @@ impl Skinning {
         Ok(Self::of(particles))
     }
 
-    /// Binds vertices, by their positions (m), joints and weights. They have no normals.
+    /// Binds vertices, by their indices, positions (m), joints and weights. They have no normals.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
     #[cfg(feature = "mesh")]
     pub fn of_vertices(
-        vertices: impl Iterator<Item = (Vec3, JointWeights)>,
+        vertices: impl Iterator<Item = (usize, Vec3, JointWeights)>,
     ) -> Result<Self, ClothError> {
-        let bound = |(vertex, (place, skin)): (usize, (Vec3, JointWeights))| {
+        let bound = |(vertex, place, skin): (usize, Vec3, JointWeights)| {
             Ok(Bound {
                 place: place.into(),
                 normal: Vec3A::ZERO,
                 skin: normalized(vertex, &skin)?,
             })
         };
-        let bound: Result<_, ClothError> = vertices.enumerate().map(bound).collect();
+        let bound: Result<_, ClothError> = vertices.map(bound).collect();
         bound.map(Self::of)
     }
 
@@ -91,6 +91,22 @@ impl Skinning {
     /// Number of joints required.
     pub fn joints(&self) -> usize {
         self.joints
+    }
+
+    /// The joint with the largest sum of weights, the first of several.
+    #[cfg(feature = "mesh")]
+    pub fn heaviest_joint(&self) -> usize {
+        let mut sums = vec![0.0_f32; self.joints];
+        for Bound { skin, .. } in &self.particles {
+            for (joint, weight) in skin.joints.into_iter().zip(skin.weights) {
+                if weight > 0.0 {
+                    sums[usize::from(joint)] += weight;
+                }
+            }
+        }
+        let sums = sums.iter().enumerate().rev();
+        let heaviest = sums.max_by(|(_, a), (_, b)| a.total_cmp(b));
+        heaviest.map_or(0, |(joint, _)| joint)
     }
 
     /// Positions of the particles in a pose. `joints` are the matrices Jⱼ Bⱼ, at least [this many](Self::joints).

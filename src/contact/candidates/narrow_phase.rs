@@ -38,7 +38,7 @@ pub enum NarrowPhase {
     Auto,
     /// Particles: exact while the collider is large compared with the spacing.
     Particles,
-    /// Triangles for all colliders but planes, for which particles are exact.
+    /// Triangles for all colliders but planes, for which particles are exact, and skinned meshes.
     Triangles,
 }
 

@@ -139,11 +139,9 @@ impl MovingCollider {
             | ColliderShape::Deforming(_) => {
                 let pose = self.pose_at(0.5);
                 let (core, radius) = self.shape.core(pose);
-                // Particles may leave the sphere by the margin.
-                (
-                    core,
-                    radius + self.max_surface_travel(self.farthest_distance(cloth) + margin) / 2.0,
-                )
+                // Particles may leave the sphere by the margin. The core of a mesh that deforms is around all of that.
+                let travel = self.max_surface_travel(self.farthest_distance(cloth) + margin);
+                (core, radius + (travel - self.shape.deformation()) / 2.0)
             }
         };
         Probe {
@@ -231,6 +229,11 @@ impl ColliderSubstep<'_> {
     pub fn speed<const N: usize>(&self, displacements: [Vec3; N]) -> f32 {
         let each = displacements.map(|displacement| (displacement - self.slide).length_squared());
         each.into_iter().fold(0.0, f32::max).sqrt() + self.swing + self.deformation
+    }
+
+    /// Largest displacement of its surface (m).
+    pub fn travel(&self) -> f32 {
+        self.slide.length() + self.swing + self.deformation
     }
 
     /// The fraction of the tick at a fraction of the sub-step.

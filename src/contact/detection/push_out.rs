@@ -131,12 +131,11 @@ impl Detection {
         // The guard measures the cloth.
         let odometer = if is_guarded { 0.0 } else { margin.odometer() } + touch.travelled;
         let motion = collider.in_substep(substep);
-        let travel = motion.slide.length() + motion.swing + motion.deformation;
         let shares = match touch.narrow_phase {
             NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
             _ => 1.0,
         };
-        let push_out = PushOut::new(particles.substep(), travel, shares);
+        let push_out = PushOut::new(particles.substep(), motion.travel(), shares);
         let lanes = lane_motion(&motion, settings, push_out, odometer);
         self.embedding.hide(touch.id, particles);
         let has_hidden = self.supports.has_hidden();

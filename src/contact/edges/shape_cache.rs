@@ -16,7 +16,8 @@ use crate::{
     },
 };
 
-/// The cache of each candidate of a tick. Only used for shapes with edges; empty in a scene without them.
+/// The cache of each candidate of a tick. Only used for shapes with edges, or whose nearest point is expensive; empty in a scene
+/// without them.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct ShapeCache {
     /// Until when a candidate's triangles can touch no edge, by the guard.

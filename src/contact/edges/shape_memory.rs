@@ -40,7 +40,7 @@ pub(crate) struct ShapeMemory {
     /// One entry for each particle, with the faces of those near an edge.
     places: Vec<KnownPlace>,
     faces: Vec<KnownFace>,
-    /// Nearest planes, for each of the cloth's blocks; only of a [`ColliderShape::Geometry`].
+    /// Nearest planes, for each of the cloth's blocks; only of a shape whose nearest point is expensive.
     planes: Vec<Planes>,
     /// Number of ticks without use.
     age: u32,

@@ -95,28 +95,26 @@ pub(crate) fn is_clear(contact: &ContactBlock, motion: &LaneMotion) -> bool {
     motion.odometer + contact.moved < contact.clear_until
 }
 
-/// Stores the depth and the clearance of a block, and returns whether to push its particles.
+/// Stores the depth and the clearance of a block, and returns whether to push its particles. Only surfaces that may deform
+/// have a motion of their own in `near`.
 #[inline(always)]
-pub(crate) fn survey(
+pub(crate) fn survey<const DEFORMS: bool>(
     view: &View,
     near: &mut Near,
     contact: &mut ContactBlock,
     motion: &LaneMotion,
     sums: &mut Sums,
 ) -> bool {
-    let [sx, sy, sz] = motion.slide;
     let (mut deepest, mut size) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     let mut is_unusual = [0_u32; LANES];
     for l in 0..LANES {
         let is_free = view[W + l] > 0.0;
         let depth = near.depth[l];
-        let slow = motion.most - (motion.swing + near.swing[l]);
+        let swing = if DEFORMS { near.swing[l] } else { 0.0 };
+        let slow = motion.most - (motion.swing + swing);
         let slow = if slow > 0.0 { slow * slow } else { -1.0 };
-        let (x, y, z) = (
-            view[DX + l] - (sx + near.surface[0][l]),
-            view[DY + l] - (sy + near.surface[1][l]),
-            view[DZ + l] - (sz + near.surface[2][l]),
-        );
+        let [sx, sy, sz] = near.on_surface::<DEFORMS>(l, motion.slide);
+        let (x, y, z) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
         let is_fast = x * x + y * y + z * z > slow;
         let is_deep = depth > motion.deepest;
         is_unusual[l] = if is_free & (is_fast | is_deep) { 1 } else { 0 };
@@ -165,10 +163,9 @@ fn leave_out(
     motion: &LaneMotion,
     is_unusual: &[u32; LANES],
 ) {
-    let slide = Vec3::from(motion.slide);
     for l in (0..LANES).filter(|&l| is_unusual[l] != 0) {
         let displacement = Vec3::new(view[DX + l], view[DY + l], view[DZ + l]);
-        let surface = slide + Vec3::from([0, 1, 2].map(|axis| near.surface[axis][l]));
+        let surface = Vec3::from(near.on_surface::<true>(l, motion.slide));
         let speed = (displacement - surface).length() + (motion.swing + near.swing[l]);
         let is_met = speed > motion.most && near.bound[l] + speed > -motion.tolerance;
         if near.depth[l] > motion.deepest || (is_met && motion.is_swept) {
@@ -180,7 +177,7 @@ fn leave_out(
 
 /// Pushes particles out that are inside, like [`Contact::push`](crate::contact::friction::Contact::push).
 #[inline(always)]
-pub(crate) fn push(
+pub(crate) fn push<const DEFORMS: bool>(
     view: &mut View,
     near: &Near,
     [area, grips]: [&Lanes; 2],
@@ -198,12 +195,8 @@ pub(crate) fn push(
         let (px, py, pz) = (view[X + l], view[Y + l], view[Z + l]);
         let gap = depth - motion.particle_radius;
         let (ax, ay, az) = (px + nx * gap - ox, py + ny * gap - oy, pz + nz * gap - oz);
-        let [sx, sy, sz] = motion.of_surface([ax, ay, az]);
-        let (sx, sy, sz) = (
-            sx + near.surface[0][l],
-            sy + near.surface[1][l],
-            sz + near.surface[2][l],
-        );
+        let rigid = motion.of_surface([ax, ay, az]);
+        let [sx, sy, sz] = near.on_surface::<DEFORMS>(l, rigid);
         let (rx, ry, rz) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
         let apart = nx * rx + ny * ry + nz * rz;
         let (tx, ty, tz) = (rx - nx * apart, ry - ny * apart, rz - nz * apart);
@@ -270,8 +263,8 @@ macro_rules! by_shape {
                 }
                 let view = blocks[contact.block as usize].view_mut();
                 let mut near = $near(view, shape);
-                if survey(view, &mut near, contact, motion, &mut own) {
-                    push(view, &near, [&contact.area, &contact.grip], motion, &mut own);
+                if survey::<false>(view, &mut near, contact, motion, &mut own) {
+                    push::<false>(view, &near, [&contact.area, &contact.grip], motion, &mut own);
                 }
             }
             *sums = own;

@@ -133,6 +133,17 @@ pub(super) fn near_cuboid(view: &View, shape: &Cuboid) -> Near {
 }
 
 impl Near {
+    /// The displacement of the surface at a lane, where a rigid shape's is `rigid` (m).
+    #[inline(always)]
+    pub fn on_surface<const DEFORMS: bool>(&self, l: usize, [x, y, z]: [f32; 3]) -> [f32; 3] {
+        if DEFORMS {
+            let [sx, sy, sz] = [self.surface[0][l], self.surface[1][l], self.surface[2][l]];
+            [x + sx, y + sy, z + sz]
+        } else {
+            [x, y, z]
+        }
+    }
+
     pub const NONE: Self = Self {
         depth: [0.0; LANES],
         bound: [0.0; LANES],

@@ -1,7 +1,7 @@
 //! Particles against the planes of a shape's surface nearest to them, for shapes whose nearest point is expensive.
 //!
 //! A particle's distance is a statement about positions: having moved by less since, it cannot touch, however much time
-//! has passed. One that touched is tested against the same plane while it hardly moves, in that tick.
+//! has passed. From a surface that deforms, it is one about the rest of the tick. One that touched is tested against the same plane while it hardly moves, in that tick.
 
 use bevy::math::{Mat3, Vec3};
 use multiversion::multiversion;
@@ -51,8 +51,9 @@ pub(crate) struct Frame {
     /// The fraction of the tick that has passed, and that of the sub-step.
     passed: f32,
     part: f32,
-    /// Largest displacement of the surface in the sub-step by deformation (m).
+    /// Largest displacement of the surface by deformation, in the sub-step and in the tick (m).
     deformation: f32,
+    farthest_move: f32,
     tick: u32,
 }
 
@@ -114,6 +115,7 @@ impl Frame {
             passed: of.substep.end(),
             part: 1.0 / of.substep.count as f32,
             deformation: of.deformation,
+            farthest_move: of.collider.shape.deformation(),
             tick,
         }
     }
@@ -123,11 +125,12 @@ impl Frame {
 struct Moved {
     /// Its position in the shape's frame (m).
     at: [f32; 3],
-    /// Its displacement since its plane was found, relative to that (m), and the length of that.
+    /// Its displacement since its plane was found, relative to that (m).
     offset: [f32; 3],
-    length: f32,
     /// Lower bound of its distance (m).
     least: f32,
+    /// Whether it is tested against its last plane.
+    is_same: bool,
 }
 
 #[inline(always)]
@@ -146,11 +149,13 @@ fn moved(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
     let distance = planes.distance[l];
     // Smaller by rounding errors: whether a particle is tested must not depend on where its plane was found.
     let size = at[0].abs() + at[1].abs() + at[2].abs() + distance.abs();
+    // Since then, no other part of a surface that deforms has come nearer by more than a particle's radius.
+    let approach = 2.0 * frame.farthest_move * passed.abs();
     Moved {
         at,
         offset,
-        length,
         least: distance - length * (1.0 + 1.0e-5) - 2.0e-6 * size,
+        is_same: (length <= planes.same[l]) & (approach <= frame.reach),
     }
 }
 
@@ -162,7 +167,7 @@ fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
         let moved = moved(view, planes, frame, l);
         // Both false for NaN.
         let is_far = moved.least > frame.reach;
-        let is_same = moved.length <= planes.same[l];
+        let is_same = moved.is_same;
         let is_free = view[W + l] > 0.0;
         is_stale[l] = if !is_far & !is_same & is_free { 1 } else { 0 };
     }
@@ -183,6 +188,12 @@ pub(crate) fn find_planes(
         let planes = &mut planes[contact.block as usize];
         if planes.tick != frame.tick {
             (planes.same, planes.tick) = ([-1.0; LANES], frame.tick);
+            if frame.deformation > 0.0 {
+                *planes = Planes {
+                    tick: frame.tick,
+                    ..Planes::UNKNOWN
+                };
+            }
         }
         let view = blocks[contact.block as usize].view();
         let mask = stale(view, planes, frame) & contact.lanes;
@@ -205,7 +216,7 @@ fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
             planes.normal[1][l],
             planes.normal[2][l],
         );
-        let is_same = moved.length <= planes.same[l];
+        let is_same = moved.is_same;
         let depth = frame.reach - (planes.distance[l] + na * a + nb * b + nc * c);
         near.depth[l] = if is_same { depth } else { f32::NEG_INFINITY };
         // Another part may be nearer than the plane.
@@ -260,8 +271,8 @@ pub(crate) fn push_planes_baseline(
         let block = contact.block as usize;
         let view = blocks[block].view_mut();
         let mut near = near_planes(view, &planes[block], frame);
-        if survey(view, &mut near, contact, motion, &mut own) {
-            push(
+        if survey::<true>(view, &mut near, contact, motion, &mut own) {
+            push::<true>(
                 view,
                 &near,
                 [&contact.area, &contact.grip],

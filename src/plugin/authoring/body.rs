@@ -9,7 +9,7 @@ use bevy::{
 use crate::{cloth::ClothError, contact::BodyMass};
 
 /// Lets cloth push a [`ClothCollider`](crate::contact::ClothCollider) back, by giving it a mass. Without this
-/// component, cloth never moves a collider.
+/// component, cloth never moves a collider. It moves no skinned mesh.
 ///
 /// Move the body, by a physics engine or by your own systems, before [`ClothSystems::Prepare`](crate::plugin::ClothSystems).
 /// During the sub-steps of the tick the body yields to the cloth according to its mass. Then the plugin writes the

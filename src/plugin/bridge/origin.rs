@@ -90,8 +90,12 @@ fn shift(
     let place = |entity: Entity| places.of(entity).ok();
     let pose = |entity: Entity| place(entity).map(|place| rigid(&place.affine()));
     let zone = |entity: Entity| PlacedZone::new(entity, zones.get(entity).ok()?, &places).ok();
+    let mut joints: Vec<Affine3A> = Vec::new();
     for (entity, mut motion) in &mut colliders {
-        motion.shift(shift, pose(entity));
+        if skins.read(entity, place, &mut joints).is_err() {
+            joints.clear();
+        }
+        motion.shift(shift, pose(entity), &mut joints);
     }
     for (entity, mut motion) in &mut roots {
         motion.shift(shift, pose(entity));
@@ -100,7 +104,6 @@ fn shift(
     for mut hand in &mut hands {
         hand.target += shift.0;
     }
-    let mut joints: Vec<Affine3A> = Vec::new();
     for mut cloth in &mut cloths {
         let own = place(cloth.entity);
         let before = *cloth.frame;

@@ -45,7 +45,7 @@ pub(crate) use islands::{Island, Islands, find_islands};
 pub(crate) use levels::choose_levels;
 pub(crate) use roots::{Teleporting, follow_roots};
 pub(crate) use seams::{Seams, forget_stitches, prepare_seams};
-pub(crate) use skin::Skins;
+pub(crate) use source::Skins;
 #[cfg(feature = "mesh")]
 pub(crate) use source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 pub(crate) use wind::prepare_wind;

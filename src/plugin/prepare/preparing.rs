@@ -7,7 +7,11 @@ use bevy::ecs::{
     system::{Query, Res, SystemParam},
 };
 
-use super::{attach::Targets, roots::Roots, skin::Skins, source::Sources};
+use super::{
+    attach::Targets,
+    roots::Roots,
+    source::{Skins, Sources},
+};
 use crate::{
     cloth::{
         Cloth, ClothGrain, ClothMaterial, ClothMaterialMap, ClothParticles, ClothShape, ClothSkin,

@@ -23,7 +23,7 @@ const WIDE: f32 = 0.065;
 /// Rings of the arm, and vertices around each: 2,028 triangles.
 const GRAIN: (u32, u32) = (38, 26);
 
-/// What cloth meets of the arm.
+/// The part of the arm that cloth meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum By {
     Capsules,
@@ -164,8 +164,8 @@ pub fn dress(app: &mut App, arm: &Arm, worn: Worn, bundle: impl Bundle) -> Entit
         Worn::Sheet => {
             let cloth = Cloth::new(32, 32, 0.015).lying().centred();
             let place = shoulder * Transform::from_xyz(ELBOW, 0.07, 0.0);
-            let sheet = (cloth, Pins::none(), place, bundle);
-            app.world_mut().spawn(sheet).id()
+            let sheet = (cloth, Pins::none(), place);
+            app.world_mut().spawn(sheet).insert(bundle).id()
         }
         Worn::Sleeve => {
             let (places, faces) = tube(SLEEVE, |_| WIDE, (32, 26), false);

@@ -202,6 +202,9 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     // And one that falls on an arm that bends.
     let arm = spawn_arm(&mut app, By::Mesh, at(180.0, 0.0, 0.0));
     cloths.push(dress(&mut app, &arm, Worn::Sheet, still));
+    // And one that sleeps on an arm that bends later.
+    let calm = spawn_arm(&mut app, By::Mesh, at(190.0, 0.0, 0.0));
+    cloths.push(dress(&mut app, &calm, Worn::Sleeve, (still, damped)));
     let walks: [fn(f32) -> Transform; 3] = [|t| swing(0, t), |t| swing(1, t), |t| swing(2, t)];
     let mut insert = |entity: Entity, moves: fn(f32) -> Transform| {
         let bundle = (Moves(moves), moves(0.0));
@@ -212,6 +215,10 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     }
     insert(arm.joints[1], |t| {
         let bent = Quat::from_rotation_z(angle(1.5, 1.0, t));
+        Transform::from_xyz(ELBOW, 0.0, 0.0).with_rotation(bent)
+    });
+    insert(calm.joints[1], |t| {
+        let bent = Quat::from_rotation_z(0.2 * (t - 8.0).max(0.0));
         Transform::from_xyz(ELBOW, 0.0, 0.0).with_rotation(bent)
     });
     insert(rig.root, |t| {

@@ -84,8 +84,7 @@ pub enum ClothCollider {
         /// Half of its height (m), before the transform's scale.
         half_height: f32,
     },
-    /// The entity's `Mesh3d`, once its asset has loaded; needs feature `mesh`. If the entity has a `SkinnedMesh`, the triangles
-    /// follow its joints, wherever the entity is.
+    /// The entity's `Mesh3d`, once it has loaded, with the joints of a `SkinnedMesh`; needs feature `mesh`.
     Mesh(MeshCollider),
     /// Several shapes, each with a pose in the entity's frame (m).
     Compound(Vec<(Isometry3d, Self)>),
@@ -364,8 +363,6 @@ fn compound(
                 parts.add_parts(pose, geometry.parts());
                 continue;
             }
-            ColliderShape::HalfSpace => return no_such("a plane in a compound"),
-            ColliderShape::Deforming(_) => return no_such("a mesh that deforms in a compound"),
             ColliderShape::Ball { radius } => SharedShape::ball(radius),
             ColliderShape::Capsule {
                 radius,
@@ -374,6 +371,7 @@ fn compound(
             ColliderShape::Cuboid { half_size: half } => {
                 SharedShape::cuboid(half.x, half.y, half.z)
             }
+            _ => return no_such("a plane in a compound"),
         };
         parts.add(pose, &shape)?;
     }

@@ -17,7 +17,8 @@ use super::{
 use topology::NONE;
 
 /// A mesh whose vertices move along straight lines in the tick, in its own frame. The outer side of a face is the one from
-/// which its corners run counter-clockwise. Clones share the data. Two are equal if they are clones of each other.
+/// which its corners run counter-clockwise. Clones share the data. Two are equal if they are of the same
+/// mesh, with the same positions.
 #[derive(Reflect, Debug, Clone)]
 #[type_path = "bevy_drape"]
 #[reflect(opaque, Debug, Clone, PartialEq)]
@@ -38,7 +39,12 @@ struct Deformed {
 
 impl PartialEq for DeformingMesh {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+        let same = |own: &Deformed, other: &Deformed| {
+            Arc::ptr_eq(&own.topology, &other.topology)
+                && own.is_mirrored == other.is_mirrored
+                && own.ends == other.ends
+        };
+        Arc::ptr_eq(&self.0, &other.0) || same(&self.0, &other.0)
     }
 }
 
@@ -292,7 +298,11 @@ impl Deformed {
                     return None;
                 }
                 let [a, b, c] = [0, 1, 2].map(|next| corners[(at + next) % 3]);
-                sum += self.normal(corners).normalize_or_zero() * (b - a).angle_between(c - a);
+                // A face without an area has no angles.
+                let angle = (b - a).angle_between(c - a);
+                if angle.is_finite() {
+                    sum += self.normal(corners).normalize_or_zero() * angle;
+                }
             }
             Some(sum)
         };

@@ -17,6 +17,8 @@ use crate::{
 pub(crate) struct SkinnedTriangles {
     topology: Arc<Topology>,
     skinning: Skinning,
+    /// The joint that moves most of the mesh.
+    carrier: usize,
 }
 
 impl SkinnedTriangles {
@@ -38,15 +40,23 @@ impl SkinnedTriangles {
             .map(|&vertex| positions[vertex as usize])
             .collect();
         let of = |corners: &[u32; 3]| corners.map(|corner| merged[corner as usize]);
+        let bound = |&vertex: &u32| {
+            let vertex = vertex as usize;
+            let skin = skin.get(vertex).copied().unwrap_or_default();
+            (vertex, positions[vertex], skin)
+        };
+        let skinning = Skinning::of_vertices(first.iter().map(bound))?;
         let topology = Topology::new(&places, triangles.iter().map(of).collect());
-        let skins = first
-            .iter()
-            .map(|&vertex| skin.get(vertex as usize).copied());
-        let vertices = places.into_iter().zip(skins.map(Option::unwrap_or_default));
         Ok(Self {
             topology: topology.into(),
-            skinning: Skinning::of_vertices(vertices)?,
+            carrier: skinning.heaviest_joint(),
+            skinning,
         })
+    }
+
+    /// The index of the joint that moves most of the mesh.
+    pub fn carrier(&self) -> usize {
+        self.carrier
     }
 
     /// Number of joints required.

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use super::nearest::Nearest;
 use bevy::{math::Vec3, reflect::Reflect};
+#[cfg(feature = "mesh")]
 pub(super) use edges::MeshEdges;
 pub(crate) use edges::SharpEdge;
 use edges::SharpEdges;

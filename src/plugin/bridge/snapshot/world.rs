@@ -99,9 +99,17 @@ impl ClothWorldSnapshot {
         }
         self.cloths.truncate(taken);
         let mut colliders = world.query::<(Entity, &ColliderMotion)>();
-        let colliders = colliders.iter(world);
-        self.colliders.clear();
-        (self.colliders).extend(colliders.map(|(entity, motion)| (entity, motion.memory())));
+        let mut taken = 0;
+        for (entity, motion) in colliders.iter(world) {
+            if taken == self.colliders.len() {
+                self.colliders.push((entity, ColliderMemory::default()));
+            }
+            let (known, memory) = &mut self.colliders[taken];
+            *known = entity;
+            motion.remember(memory);
+            taken += 1;
+        }
+        self.colliders.truncate(taken);
         let mut roots = world.query::<(Entity, &RootMotion)>();
         let roots = roots.iter(world);
         self.roots.clear();
@@ -206,7 +214,7 @@ impl ClothWorldSnapshot {
         }
         for (entity, memory) in &self.colliders {
             if let Some(mut motion) = world.get_mut::<ColliderMotion>(*entity) {
-                motion.recall(memory.clone());
+                motion.recall(memory);
             }
         }
         for (entity, last) in &self.roots {

@@ -52,7 +52,8 @@ pub(crate) fn prepare_colliders(
         let Ok((collider, mut motion, body, fault)) = colliders.get_mut(entity) else {
             continue;
         };
-        if roots.jumps(entity) {
+        let joint = meshes.joint(entity, collider);
+        if roots.jumps(entity) || joint.is_some_and(|joint| roots.jumps(joint)) {
             motion.stop();
         }
         let outcome = motion.follow(collider, body, &places, &meshes, entity, time_passes);

@@ -2,9 +2,11 @@
 //!
 //! In: `ClothCollider`, `ClothBody`, transforms. Out: the motion of each collider, and the tree of their bounds.
 
+mod built;
 mod changes;
 mod follow;
 mod motion;
+mod skinned;
 mod stay;
 mod tree;
 

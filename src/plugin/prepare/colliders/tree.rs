@@ -2,12 +2,17 @@
 
 use bevy::{
     ecs::{entity::Entity, resource::Resource},
-    math::Vec3,
+    math::{Mat3, Vec3},
 };
 use parry3d::{
     bounding_volume::Aabb,
     partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhNode, BvhWorkspace},
 };
+
+use crate::hierarchy::Core;
+
+/// Margin of a box against rounding of its corners and of the collider's points.
+pub(super) const ROUNDING: f32 = 1.0e-5;
 
 /// A leaf is stored larger than its collider by this part of its size, so that slow colliders change the tree only now
 /// and then.
@@ -62,6 +67,31 @@ pub(crate) enum Bounds {
 }
 
 impl Bounds {
+    /// A box around all points nearer than `radius` to a core (m).
+    pub fn of_core(core: &Core, radius: f32) -> Self {
+        let [low, high] = match *core {
+            Core::Point(point) => [point; 2],
+            Core::Segment([a, b]) => [a.min(b), a.max(b)],
+            Core::Cuboid { pose, half_size } => {
+                let axes = Mat3::from_quat(pose.rotation);
+                let half = axes.x_axis.abs() * half_size.x
+                    + axes.y_axis.abs() * half_size.y
+                    + axes.z_axis.abs() * half_size.z;
+                let centre = Vec3::from(pose.translation);
+                [centre - half, centre + half]
+            }
+            Core::HalfSpace { .. } => return Self::Unbounded,
+        };
+        Self::around([low, high], radius)
+    }
+
+    /// A box that is larger by `reach` to each side (m), and by the effect of rounding.
+    pub fn around([low, high]: [Vec3; 2], reach: f32) -> Self {
+        let size = low.abs().max(high.abs()).max_element() + reach;
+        let reach = Vec3::splat(reach + size * ROUNDING);
+        Self::Box([low - reach, high + reach])
+    }
+
     /// The smallest box around both.
     pub fn union(self, other: Self) -> Self {
         match (self, other) {

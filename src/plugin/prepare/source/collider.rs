@@ -14,11 +14,11 @@ use bevy::{
     platform::collections::HashMap,
 };
 
-use super::asset::Sources;
+use super::{asset::Sources, joints::Skins};
 use crate::{
     cloth::ClothError,
     contact::{ClothCollider, MeshCollider, SkinnedTriangles},
-    plugin::{frame::Places, prepare::skin::Skins, state::Source},
+    plugin::{frame::Places, state::Source},
 };
 
 /// The colliders that have been made from meshes, shared by all entities with the same mesh.
@@ -100,6 +100,14 @@ impl ColliderMeshes<'_, '_> {
                 self.skins.read(entity, place, joints)
             }
             _ => Ok(()),
+        }
+    }
+
+    /// The first joint that moves a collider's triangles.
+    pub fn joint(&self, entity: Entity, collider: &ClothCollider) -> Option<Entity> {
+        match collider {
+            ClothCollider::Mesh(MeshCollider::Triangles) => self.skins.first(entity),
+            _ => None,
         }
     }
 

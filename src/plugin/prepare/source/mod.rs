@@ -1,4 +1,4 @@
-//! The sources of triangles of cloths and colliders that are made from meshes.
+//! The sources of joints, and of triangles of cloths and colliders that are made from meshes.
 
 #[cfg(feature = "mesh")]
 mod asset;
@@ -6,6 +6,8 @@ mod asset;
 mod changes;
 #[cfg(feature = "mesh")]
 mod collider;
+#[cfg(feature = "mesh")]
+mod joints;
 #[cfg(not(feature = "mesh"))]
 mod none;
 
@@ -15,5 +17,7 @@ pub(crate) use asset::{ChangedMeshes, Sources};
 pub(crate) use changes::note_changed_meshes;
 #[cfg(feature = "mesh")]
 pub(crate) use collider::{ColliderMeshes, SharedMeshes};
+#[cfg(feature = "mesh")]
+pub(crate) use joints::Skins;
 #[cfg(not(feature = "mesh"))]
-pub(crate) use none::{ColliderMeshes, Sources};
+pub(crate) use none::{ColliderMeshes, Skins, Sources};

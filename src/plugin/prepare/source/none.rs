@@ -5,6 +5,7 @@ use std::{marker::PhantomData, sync::Arc};
 use bevy::{
     ecs::{entity::Entity, system::SystemParam},
     math::Affine3A,
+    transform::components::GlobalTransform,
 };
 
 use crate::{
@@ -73,6 +74,11 @@ impl ColliderMeshes<'_> {
         Ok(())
     }
 
+    /// No collider has joints.
+    pub fn joint(&self, _: Entity, _: &ClothCollider) -> Option<Entity> {
+        None
+    }
+
     /// There is no mesh to be skinned.
     pub fn skinned(&self, source: Source) -> Result<Arc<SkinnedTriangles>, ClothError> {
         match source {}
@@ -85,5 +91,34 @@ impl ColliderMeshes<'_> {
         _: Option<Source>,
     ) -> Result<ClothCollider, ClothError> {
         Ok(collider.clone())
+    }
+}
+
+/// No skins.
+#[derive(SystemParam)]
+pub(crate) struct Skins<'w, 's> {
+    none: PhantomData<(&'w (), &'s ())>,
+}
+
+impl Skins<'_, '_> {
+    /// No entity has joints.
+    pub fn read(
+        &self,
+        _: Entity,
+        _: impl Fn(Entity) -> Option<GlobalTransform>,
+        matrices: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        matrices.clear();
+        Ok(())
+    }
+
+    /// There are none.
+    pub fn are_at(
+        &self,
+        _: Entity,
+        _: impl Fn(Entity) -> Option<GlobalTransform>,
+        known: &[Affine3A],
+    ) -> bool {
+        known.is_empty()
     }
 }

@@ -1,41 +1,37 @@
 //! How colliders move from tick to tick.
 
-mod skinned;
-
 use bevy::{
     ecs::{component::Component, entity::Entity},
-    math::{Affine3A, Isometry3d, Mat3, Quat, Vec3, Vec3A},
+    math::{Affine3A, Isometry3d, Quat, Vec3, Vec3A},
 };
 
-use super::{stay::Stay, tree::Bounds};
+use super::{
+    built::BuiltShape,
+    skinned::SkinnedMotion,
+    stay::Stay,
+    tree::{Bounds, ROUNDING},
+};
 use crate::{
     cloth::{ClothError, FARTHEST},
     contact::{BodyChange, BodyMass, ClothCollider, ColliderShape, MovingCollider},
-    hierarchy::Core,
     plugin::{
         authoring::{Carried, ClothBody},
         frame::{ClothFrame, Places, Shift, unusable},
         prepare::source::ColliderMeshes,
-        state::Source,
     },
 };
-use skinned::Skinned;
-
-/// Margin of a box against rounding of its corners and of the collider's points.
-const ROUNDING: f32 = 1.0e-5;
 
 /// A collider's path through the tick, in the world.
 #[derive(Component, Debug, Default)]
 pub(crate) struct ColliderMotion {
     /// Its path; `None` before the first tick.
     moving: Option<MovingCollider>,
-    /// Place of its entity after the last tick in which time passed. The frame of the shape may be another.
+    /// Place of its entity, or of its skinned mesh, after the last tick in which time passed. The frame of the shape may be another.
     last: Option<Isometry3d>,
     /// The same, a tick earlier.
     before: Option<Isometry3d>,
-    /// Transforms of the joints of a skinned mesh after that tick, from the mesh to the frame of `last`, and now.
-    joints: Vec<Affine3A>,
-    joints_now: Vec<Affine3A>,
+    /// Its joints, if it is a skinned mesh. Then the frame is not that of the entity.
+    skinned: SkinnedMotion,
     /// How long it has been where it is, if it is a body.
     stay: Stay,
     /// Middle of its path (m), and the largest distance from there to any of the collider's points on it.
@@ -47,12 +43,12 @@ pub(crate) struct ColliderMotion {
     bounds: Bounds,
     /// How many cloths pushed it in the last tick, if it is a body.
     cloths: u32,
-    /// The shape and the inputs that it was built from, so that a mesh of many triangles is built only once.
+    /// Its shape.
     built: Option<BuiltShape>,
 }
 
 /// The inputs of a collider's next path, besides its place then.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ColliderMemory {
     last: Option<Isometry3d>,
@@ -61,85 +57,8 @@ pub(crate) struct ColliderMemory {
     stay: Stay,
 }
 
-/// A shape, with its collider and scale.
-#[derive(Debug)]
-struct BuiltShape {
-    collider: ClothCollider,
-    source: Option<Source>,
-    scale: Vec3,
-    shape: ColliderShape,
-    /// The shape's frame in that of the entity.
-    offset: Isometry3d,
-    /// If it is skinned: then the frame is not that of the entity.
-    skinned: Option<Skinned>,
-}
-
-impl BuiltShape {
-    fn is_of(&self, collider: &ClothCollider, source: Option<Source>, scale: Vec3) -> bool {
-        // A scale that is read out of a rotating transform changes by rounding.
-        self.collider == *collider
-            && self.source == source
-            && self.skinned.is_none()
-            && self.scale.abs_diff_eq(scale, 1.0e-5 * scale.length())
-    }
-}
-
-/// A box around all points nearer than `radius` to a core (m).
-fn bounds_of(core: &Core, radius: f32) -> Bounds {
-    let [low, high] = match *core {
-        Core::Point(point) => [point; 2],
-        Core::Segment([a, b]) => [a.min(b), a.max(b)],
-        Core::Cuboid { pose, half_size } => {
-            let axes = Mat3::from_quat(pose.rotation);
-            let half = axes.x_axis.abs() * half_size.x
-                + axes.y_axis.abs() * half_size.y
-                + axes.z_axis.abs() * half_size.z;
-            let centre = Vec3::from(pose.translation);
-            [centre - half, centre + half]
-        }
-        Core::HalfSpace { .. } => return Bounds::Unbounded,
-    };
-    around([low, high], radius)
-}
-
-/// A box that is larger by `reach` to each side (m), and by what rounding may do.
-fn around([low, high]: [Vec3; 2], reach: f32) -> Bounds {
-    let size = low.abs().max(high.abs()).max_element() + reach;
-    let reach = Vec3::splat(reach + size * ROUNDING);
-    Bounds::Box([low - reach, high + reach])
-}
-
 impl ColliderMotion {
-    /// Builds the shape if it is new, or if it or its scale has changed.
-    fn build(
-        &mut self,
-        collider: &ClothCollider,
-        meshes: &ColliderMeshes,
-        entity: Entity,
-        scale: Vec3,
-    ) -> Result<(), ClothError> {
-        let known = self.built.as_ref().and_then(|built| built.source);
-        let source = meshes.find(entity, collider, known)?;
-        let is_built = self
-            .built
-            .as_ref()
-            .is_some_and(|built| built.is_of(collider, source, scale));
-        if !is_built {
-            self.built = None;
-            let made = meshes.resolve(collider, source)?;
-            self.built = Some(BuiltShape {
-                shape: made.scaled(scale)?,
-                offset: made.offset(),
-                collider: collider.clone(),
-                source,
-                scale,
-                skinned: None,
-            });
-        }
-        Ok(())
-    }
-
-    /// Reads the current place of its entity, and its shape.
+    /// Reads the current place of its entity, or of its joints, and its shape.
     ///
     /// # Errors
     /// The error of the collider, or of its transform.
@@ -150,9 +69,23 @@ impl ColliderMotion {
         meshes: &ColliderMeshes,
         entity: Entity,
     ) -> Result<Isometry3d, ClothError> {
+        let was_skinned = self.is_skinned();
+        let built = self.built.take();
+        if let Some(pose) = (self.skinned).follow(collider, places, meshes, entity)? {
+            // Its frame is another than that of a rigid one, or of other joints.
+            if built.is_some() && !was_skinned || pose.begins {
+                self.last = None;
+            }
+            let place = pose.place;
+            self.built = Some(BuiltShape::skinned(collider, pose)?);
+            return Ok(place);
+        }
+        if was_skinned {
+            self.last = None;
+        }
         let transform = places.of(entity)?;
         let (scale, rotation, translation) = transform.to_scale_rotation_translation();
-        self.build(collider, meshes, entity, scale)?;
+        self.built = Some(BuiltShape::rigid(built, collider, meshes, entity, scale)?);
         let is_far = translation.abs().max_element() > FARTHEST;
         if is_far || !(translation.is_finite() && rotation.is_finite()) {
             return Err(unusable(transform.affine()));
@@ -173,27 +106,11 @@ impl ColliderMotion {
         entity: Entity,
         time_passes: bool,
     ) -> Result<(), ClothError> {
-        let mut joints = std::mem::take(&mut self.joints_now);
-        let skin = meshes.joints(entity, collider, places, &mut joints);
-        self.joints_now = joints;
-        skin?;
-        let place = match self.joints_now.is_empty() {
-            true => self.place(collider, places, meshes, entity)?,
-            false => self.follow_joints(collider, meshes, entity)?,
-        };
+        let place = self.place(collider, places, meshes, entity)?;
+        let is_skinned = self.is_skinned();
         let Some(BuiltShape { shape, offset, .. }) = &self.built else {
             return Ok(());
         };
-        // Only a half-space has no end.
-        if *shape != ColliderShape::HalfSpace {
-            let is_in_reach = |extent: f32| extent <= FARTHEST;
-            ClothError::check(
-                shape.extent(),
-                is_in_reach,
-                "the collider's size (m)",
-                "at most 10¹²",
-            )?;
-        }
         let last = self.last.unwrap_or(place);
         let (from, pose) = (last * *offset, place * *offset);
         let translation = Vec3::from(pose.translation);
@@ -205,7 +122,8 @@ impl ColliderMotion {
             from,
             to: translation,
             turn: turned.to_scaled_axis(),
-            body: match body {
+            // Cloth does not move joints.
+            body: match body.filter(|_| !is_skinned) {
                 Some(body) => {
                     // As the tick begins, and seen from where the shape's origin is, which need not be the entity's.
                     let mass = body.mass_at(last.rotation)?.part_of(self.cloths);
@@ -231,8 +149,8 @@ impl ColliderMotion {
         // If it is moved while no time passes, the motion counts in the next tick with time.
         self.last = Some(if time_passes { place } else { last });
         self.before = Some(last);
-        if time_passes || self.joints.is_empty() {
-            self.joints.clone_from(&self.joints_now);
+        if time_passes {
+            self.skinned.pass();
         }
         Ok(())
     }
@@ -243,11 +161,11 @@ impl ColliderMotion {
             return Bounds::Unbounded;
         }
         if moving.turn != Vec3::ZERO {
-            return around([self.middle; 2], self.reach);
+            return Bounds::around([self.middle; 2], self.reach);
         }
         let [from, to] = [0.0, 1.0].map(|part| {
             let (core, radius) = moving.shape.core(moving.pose_at(part));
-            bounds_of(&core, radius)
+            Bounds::of_core(&core, radius)
         });
         from.union(to)
     }
@@ -324,28 +242,29 @@ impl ColliderMotion {
         self.stay = Stay::default();
     }
 
-    /// The inputs of its next path.
-    pub fn memory(&self) -> ColliderMemory {
-        ColliderMemory {
-            last: self.last,
-            joints: self.joints.clone(),
-            cloths: self.cloths,
-            stay: self.stay,
-        }
+    /// Writes the inputs of its next path to a snapshot.
+    pub fn remember(&self, memory: &mut ColliderMemory) {
+        (memory.last, memory.cloths, memory.stay) = (self.last, self.cloths, self.stay);
+        memory.joints.clone_from(self.skinned.memory());
     }
 
     /// Restores the inputs of its next path, from a snapshot.
-    pub fn recall(&mut self, memory: ColliderMemory) {
-        ColliderMemory {
-            last: self.last,
-            joints: self.joints,
-            cloths: self.cloths,
-            stay: self.stay,
-        } = memory;
+    pub fn recall(&mut self, memory: &ColliderMemory) {
+        (self.last, self.cloths, self.stay) = (memory.last, memory.cloths, memory.stay);
+        self.skinned.recall(&memory.joints);
     }
 
-    /// Shifts it with the world's origin; its entity is at `now`.
-    pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>) {
+    /// Whether it follows joints.
+    fn is_skinned(&self) -> bool {
+        self.built.as_ref().is_some_and(BuiltShape::is_skinned)
+    }
+
+    /// Shifts it with the world's origin; its entity is at `now`, and its joints are there, if it has any.
+    pub fn shift(&mut self, shift: Shift, now: Option<Isometry3d>, joints: &mut [Affine3A]) {
+        let now = match self.is_skinned() {
+            true => self.skinned.shift(shift, joints),
+            false => now,
+        };
         self.last = self.last.map(|last| shift.rigid(last, now));
         self.stay = self.stay.shifted(shift);
     }
@@ -354,7 +273,7 @@ impl ColliderMotion {
     pub fn stop(&mut self) {
         self.unsettle();
         self.last = None;
-        self.joints.clear();
+        self.skinned.stop();
     }
 
     /// Its bounds along the whole path, for the tree of all colliders.

@@ -30,6 +30,11 @@ impl Skins<'_, '_> {
         of_skin.or(skeleton.map(|skeleton| (&skeleton.inverse_bindposes, &*skeleton.joints)))
     }
 
+    /// The first joint of an entity.
+    pub fn first(&self, entity: Entity) -> Option<Entity> {
+        self.of(entity)?.1.first().copied()
+    }
+
     /// The matrices that take an entity's mesh, as it is bound, to the world: each joint's global transform, as `place`
     /// knows it, times its inverse bind pose. Empty for an entity that is not skinned.
     ///
