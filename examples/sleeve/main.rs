@@ -40,12 +40,12 @@ fn main() -> ExitCode {
         // From the shoulder to the hem.
         particles: 24,
         shot: Shot {
-            from: Vec3::new(1.35, 1.25, 1.25),
-            focus: Vec3::new(0.06, 0.98, 0.0),
+            from: Vec3::new(0.75, 1.25, 1.55),
+            focus: Vec3::new(0.12, 1.0, 0.0),
             fov: 0.52,
         },
         // As the forearm is up.
-        drawn_at: 3.1,
+        drawn_at: 4.7,
         scene: scene::build,
         report: report::plain,
     }

@@ -83,10 +83,11 @@ fn what_sleeps_sleeps_on() {
     let corners = || Pins::new([Corner::TopLeft, Corner::TopRight].map(Pin::Corner));
     let lying = || (Cloth::new(9, 9, 0.1).lying().centred(), damped);
     let arm = spawn_arm(&mut app, By::Mesh, at(0.0, 3.0, 0.0));
-    let sleeve = dress(&mut app, &arm, Worn::Sleeve, damped);
+    let pinned = Pins::new([Corner::TopLeft, Corner::BottomRight].map(Pin::Corner));
+    let sheet = dress(&mut app, &arm, Worn::Sheet, (pinned, damped));
     let world = app.world_mut();
     let cloths = [
-        sleeve,
+        sheet,
         world.spawn((lying(), corners(), at(0.0, 0.0, 0.0))).id(),
         world.spawn((lying(), corners(), at(3.0, 0.0, 1.0))).id(),
         world

@@ -72,7 +72,8 @@ impl RestsOn {
             return self.is_held(body, collider, far);
         }
         let is_alike = (self.from.rotation, self.turn) == (collider.from.rotation, collider.turn)
-            && collider.body.is_none();
+            && collider.body.is_none()
+            && collider.shape.deformation() == 0.0;
         let is_near = |was: Vec3, now: Vec3| (now - was).abs().max_element() <= self.slack;
         let from = [self.from.translation, collider.from.translation].map(Vec3::from);
         is_alike

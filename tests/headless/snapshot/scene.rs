@@ -204,7 +204,8 @@ pub fn everything_after(others: usize) -> (App, Vec<Entity>) {
     cloths.push(dress(&mut app, &arm, Worn::Sheet, still));
     // And one that sleeps on an arm that bends later.
     let calm = spawn_arm(&mut app, By::Mesh, at(190.0, 0.0, 0.0));
-    cloths.push(dress(&mut app, &calm, Worn::Sleeve, (still, damped)));
+    let pinned = Pins::new([Corner::TopLeft, Corner::BottomRight].map(Pin::Corner));
+    cloths.push(dress(&mut app, &calm, Worn::Sheet, (pinned, still, damped)));
     let walks: [fn(f32) -> Transform; 3] = [|t| swing(0, t), |t| swing(1, t), |t| swing(2, t)];
     let mut insert = |entity: Entity, moves: fn(f32) -> Transform| {
         let bundle = (Moves(moves), moves(0.0));
