@@ -21,7 +21,11 @@ pub fn surface(positions: Vec<[f32; 3]>, uvs: Vec<[f32; 2]>, indices: Vec<u32>) 
 
 /// The same with smooth normals, and with tangents.
 pub fn smooth(positions: Vec<[f32; 3]>, uvs: Vec<[f32; 2]>, indices: Vec<u32>) -> Mesh {
-    let mesh = surface(positions, uvs, indices).with_computed_smooth_normals();
+    // Bevy leaves out the corners of triangles of a few millimetres. A power of two rounds nothing.
+    let mesh = surface(positions, uvs, indices)
+        .scaled_by(Vec3::splat(128.0))
+        .with_computed_smooth_normals()
+        .scaled_by(Vec3::splat(1.0 / 128.0));
     mesh.clone().with_generated_tangents().unwrap_or(mesh)
 }
 

@@ -20,25 +20,25 @@ use examples_shared::{arrows::up_down, headless::TickByTick, surfaces::turned};
 /// Height of the shoulder above the floor, and how far below it the elbow is (m).
 const SHOULDER: f32 = 1.3;
 const ELBOW: f32 = 0.3;
-/// Radii of the arm at heights above the shoulder, from the hand on (m).
+/// Radii of the arm at heights above the shoulder (m), from the top.
 const ARM: [[f32; 2]; 17] = [
-    [0.0, -0.70],
-    [0.036, -0.68],
-    [0.042, -0.62],
-    [0.029, -0.57],
-    [0.036, -0.52],
-    [0.046, -0.44],
-    [0.050, -0.38],
-    [0.045, -0.34],
-    [0.043, -0.30],
-    [0.045, -0.26],
-    [0.052, -0.22],
-    [0.058, -0.16],
-    [0.062, -0.10],
-    [0.070, -0.04],
-    [0.068, 0.02],
-    [0.045, 0.06],
     [0.0, 0.07],
+    [0.045, 0.06],
+    [0.068, 0.02],
+    [0.070, -0.04],
+    [0.062, -0.10],
+    [0.058, -0.16],
+    [0.052, -0.22],
+    [0.045, -0.26],
+    [0.043, -0.30],
+    [0.045, -0.34],
+    [0.050, -0.38],
+    [0.046, -0.44],
+    [0.036, -0.52],
+    [0.029, -0.57],
+    [0.042, -0.62],
+    [0.036, -0.68],
+    [0.0, -0.70],
 ];
 /// How far above and below the elbow the skin follows both bones (m).
 const BLEND: f32 = 0.05;
@@ -177,7 +177,7 @@ fn sew(shop: &mut Workshop, upper: Entity, place: Transform) {
         Pins::none(),
         ClothAttachments::new([(held, upper)]),
         ClothMaterial::COTTON,
-        ClothSettings::substeps(20),
+        ClothSettings::substeps(28),
         ShowClothGizmos::nothing(),
         linen,
         place,

@@ -218,7 +218,7 @@ pub fn inside(app: &App, arm: &Arm, cloth: Entity) -> usize {
         let is_near = |place: &DVec3| place.distance(*at) < f64::from(2.0 * radius(0.0));
         truth.iter().any(is_near) && is_inside(&truth, &arm.faces, *at)
     };
-    let places = in_world(app, cloth).into_iter().map(|at| at.as_dvec3());
+    let places = in_world(app, cloth).into_iter().map(Vec3::as_dvec3);
     places.filter(of).count()
 }
 

@@ -185,7 +185,7 @@ fn bad_skins_are_faults() {
     }
     for scale in [0.0, 1.0e-20, -1.0, 1.0] {
         change::<Transform>(&mut app, arm.joints[0], |bone| {
-            bone.scale = Vec3::splat(scale)
+            bone.scale = Vec3::splat(scale);
         });
         tick(&mut app, 2);
         assert_eq!(fault(&app, arm.skin), None, "a scale of {scale}");

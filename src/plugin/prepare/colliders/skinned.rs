@@ -155,8 +155,8 @@ fn take_to_frame(joints: &mut [Affine3A], carrier: usize) -> Result<Isometry3d, 
         true => place,
         false => Isometry3d::from_translation(carrier.translation),
     };
-    // False for NaN.
-    if !(place.translation.abs().max_element() <= FARTHEST) {
+    let is_far = place.translation.abs().max_element() > FARTHEST;
+    if is_far || !place.translation.is_finite() {
         return Err(unusable(carrier));
     }
     let turn = Mat3A::from_quat(place.rotation.inverse());
