@@ -63,8 +63,8 @@ fn nothing_feels_a_jump_of_the_origin() {
     }
 }
 
-/// What sleeps, on a ball, on an arm, on cloth, before a fan that stands still or on a skeleton, sleeps through a hundred jumps, with the same bits; what
-/// is drawn of it is not written again elsewhere.
+/// A cloth that sleeps on a ball, on an arm, on cloth, before a fan that stands still or on a skeleton sleeps through a hundred
+/// jumps, with the same bits. Its mesh is not written again elsewhere.
 #[test]
 fn what_sleeps_sleeps_on() {
     let mut app = app_that_draws(FixedUpdate);

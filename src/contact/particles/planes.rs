@@ -119,6 +119,11 @@ impl Frame {
             tick,
         }
     }
+
+    /// Whether the surface moves in this frame.
+    fn deforms(&self) -> bool {
+        self.deformation > 0.0
+    }
 }
 
 /// A particle relative to its plane.
@@ -134,37 +139,40 @@ struct Moved {
 }
 
 #[inline(always)]
-fn moved(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
+fn moved<const DEFORMS: bool>(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
     let [cx, cy, cz] = frame.centre;
     let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
     let at = frame.axes.map(|[u, v, w]| x * u + y * v + z * w);
-    let passed = frame.passed - planes.since[l];
-    let offset = [
-        at[0] - (planes.at[0][l] + planes.surface[0][l] * passed),
-        at[1] - (planes.at[1][l] + planes.surface[1][l] * passed),
-        at[2] - (planes.at[2][l] + planes.surface[2][l] * passed),
-    ];
+    let mut known = [planes.at[0][l], planes.at[1][l], planes.at[2][l]];
+    let mut is_recent = true;
+    if DEFORMS {
+        let passed = frame.passed - planes.since[l];
+        known[0] += planes.surface[0][l] * passed;
+        known[1] += planes.surface[1][l] * passed;
+        known[2] += planes.surface[2][l] * passed;
+        // Since then, no other part of the surface has come nearer by more than a particle's radius.
+        is_recent = 2.0 * frame.farthest_move * passed.abs() <= frame.reach;
+    }
+    let offset = [at[0] - known[0], at[1] - known[1], at[2] - known[2]];
     let [a, b, c] = offset;
     let length = (a * a + b * b + c * c).sqrt();
     let distance = planes.distance[l];
     // Smaller by rounding errors: whether a particle is tested must not depend on where its plane was found.
     let size = at[0].abs() + at[1].abs() + at[2].abs() + distance.abs();
-    // Since then, no other part of a surface that deforms has come nearer by more than a particle's radius.
-    let approach = 2.0 * frame.farthest_move * passed.abs();
     Moved {
         at,
         offset,
         least: distance - length * (1.0 + 1.0e-5) - 2.0e-6 * size,
-        is_same: (length <= planes.same[l]) & (approach <= frame.reach),
+        is_same: (length <= planes.same[l]) & is_recent,
     }
 }
 
 /// Bit mask of the particles that may touch the shape, but not their last planes.
 #[inline(always)]
-fn stale(view: &View, planes: &Planes, frame: &Frame) -> u8 {
+fn stale<const DEFORMS: bool>(view: &View, planes: &Planes, frame: &Frame) -> u8 {
     let mut is_stale = [0_u32; LANES];
     for l in 0..LANES {
-        let moved = moved(view, planes, frame, l);
+        let moved = moved::<DEFORMS>(view, planes, frame, l);
         // Both false for NaN.
         let is_far = moved.least > frame.reach;
         let is_same = moved.is_same;
@@ -188,7 +196,7 @@ pub(crate) fn find_planes(
         let planes = &mut planes[contact.block as usize];
         if planes.tick != frame.tick {
             (planes.same, planes.tick) = ([-1.0; LANES], frame.tick);
-            if frame.deformation > 0.0 {
+            if frame.deforms() {
                 *planes = Planes {
                     tick: frame.tick,
                     ..Planes::UNKNOWN
@@ -196,20 +204,24 @@ pub(crate) fn find_planes(
             }
         }
         let view = blocks[contact.block as usize].view();
-        let mask = stale(view, planes, frame) & contact.lanes;
+        let is_stale = match frame.deforms() {
+            true => stale::<true>(view, planes, frame),
+            false => stale::<false>(view, planes, frame),
+        };
+        let mask = is_stale & contact.lanes;
         for lane in (0..LANES).filter(|lane| mask & (1 << lane) != 0) {
-            let at = moved(view, planes, frame, lane).at;
+            let at = moved::<false>(view, planes, frame, lane).at;
             planes.find(lane, shape, at.into(), frame);
         }
     }
 }
 
 #[inline(always)]
-fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
+fn near_planes<const DEFORMS: bool>(view: &View, planes: &Planes, frame: &Frame) -> Near {
     let mut near = Near::NONE;
     let [u, v, w] = frame.axes;
     for l in 0..LANES {
-        let moved = moved(view, planes, frame, l);
+        let moved = moved::<DEFORMS>(view, planes, frame, l);
         let [a, b, c] = moved.offset;
         let (na, nb, nc) = (
             planes.normal[0][l],
@@ -225,20 +237,18 @@ fn near_planes(view: &View, planes: &Planes, frame: &Frame) -> Near {
         near.offset[1][l] = u[1] * na + v[1] * nb + w[1] * nc;
         near.offset[2][l] = u[2] * na + v[2] * nb + w[2] * nc;
         near.length[l] = 1.0;
-        let is_far = moved.least > frame.reach;
-        near.swing[l] = if is_far | is_same {
-            0.0
-        } else {
-            frame.deformation
-        };
-        let (a, b, c) = (
-            planes.surface[0][l] * frame.part,
-            planes.surface[1][l] * frame.part,
-            planes.surface[2][l] * frame.part,
-        );
-        near.surface[0][l] = u[0] * a + v[0] * b + w[0] * c;
-        near.surface[1][l] = u[1] * a + v[1] * b + w[1] * c;
-        near.surface[2][l] = u[2] * a + v[2] * b + w[2] * c;
+        if DEFORMS {
+            let is_known = is_same | (moved.least > frame.reach);
+            near.swing[l] = if is_known { 0.0 } else { frame.deformation };
+            let (a, b, c) = (
+                planes.surface[0][l] * frame.part,
+                planes.surface[1][l] * frame.part,
+                planes.surface[2][l] * frame.part,
+            );
+            near.surface[0][l] = u[0] * a + v[0] * b + w[0] * c;
+            near.surface[1][l] = u[1] * a + v[1] * b + w[1] * c;
+            near.surface[2][l] = u[2] * a + v[2] * b + w[2] * c;
+        }
     }
     near
 }
@@ -269,17 +279,27 @@ pub(crate) fn push_planes_baseline(
             continue;
         }
         let block = contact.block as usize;
-        let view = blocks[block].view_mut();
-        let mut near = near_planes(view, &planes[block], frame);
-        if survey::<true>(view, &mut near, contact, motion, &mut own) {
-            push::<true>(
-                view,
-                &near,
-                [&contact.area, &contact.grip],
-                motion,
-                &mut own,
-            );
+        let (view, planes) = (blocks[block].view_mut(), &planes[block]);
+        if frame.deforms() {
+            push_block::<true>(view, contact, planes, (frame, motion), &mut own);
+        } else {
+            push_block::<false>(view, contact, planes, (frame, motion), &mut own);
         }
     }
     *sums = own;
+}
+
+#[inline(always)]
+fn push_block<const DEFORMS: bool>(
+    view: &mut View,
+    contact: &mut ContactBlock,
+    planes: &Planes,
+    (frame, motion): (&Frame, &LaneMotion),
+    sums: &mut Sums,
+) {
+    let mut near = near_planes::<DEFORMS>(view, planes, frame);
+    if survey::<DEFORMS>(view, &mut near, contact, motion, sums) {
+        let of = [&contact.area, &contact.grip];
+        push::<DEFORMS>(view, &near, of, motion, sums);
+    }
 }
