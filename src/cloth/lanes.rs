@@ -49,12 +49,14 @@ mod by_lanes {
 
     use super::{LANES, Lanes};
 
+    #[inline]
     pub fn serialize<S: Serializer>(block: &[f32; 8 * LANES], to: S) -> Result<S::Ok, S::Error> {
         let mut lanes: [Lanes; 8] = Default::default();
         lanes.as_flattened_mut().copy_from_slice(block);
         lanes.serialize(to)
     }
 
+    #[inline]
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[f32; 8 * LANES], D::Error> {
         let lanes = <[Lanes; 8]>::deserialize(from)?;
         let mut block = [0.0; 8 * LANES];
@@ -94,26 +96,32 @@ impl Block {
         self.0[DX..].first_chunk_mut().expect("24 of 32 numbers")
     }
 
+    #[inline]
     pub fn position(&self, lane: usize) -> Vec3 {
         Vec3::new(self.0[X + lane], self.0[Y + lane], self.0[Z + lane])
     }
 
+    #[inline]
     pub fn displacement(&self, lane: usize) -> Vec3 {
         Vec3::new(self.0[DX + lane], self.0[DY + lane], self.0[DZ + lane])
     }
 
+    #[inline]
     pub fn inverse_mass(&self, lane: usize) -> f32 {
         self.0[W + lane]
     }
 
+    #[inline]
     pub fn set_position(&mut self, lane: usize, position: Vec3) {
         [self.0[X + lane], self.0[Y + lane], self.0[Z + lane]] = position.to_array();
     }
 
+    #[inline]
     pub fn set_displacement(&mut self, lane: usize, displacement: Vec3) {
         [self.0[DX + lane], self.0[DY + lane], self.0[DZ + lane]] = displacement.to_array();
     }
 
+    #[inline]
     pub fn set_inverse_mass(&mut self, lane: usize, inverse_mass: f32) {
         self.0[W + lane] = inverse_mass;
     }
@@ -139,6 +147,7 @@ pub(crate) struct Slot {
 }
 
 impl Layout {
+    #[inline]
     pub fn new(columns: u32, rows: u32) -> Self {
         let strip = columns.div_ceil(LANES as u32).next_multiple_of(2).max(2);
         Self {
@@ -149,15 +158,18 @@ impl Layout {
     }
 
     /// Number of particles.
+    #[inline]
     pub fn len(&self) -> usize {
         self.columns as usize * self.rows as usize
     }
 
     /// Number of blocks.
+    #[inline]
     pub fn blocks(&self) -> usize {
         self.strip as usize * self.rows as usize
     }
 
+    #[inline]
     pub fn slot(&self, row: u32, column: u32) -> Slot {
         Slot {
             block: row as usize * self.strip as usize + (column % self.strip) as usize,
@@ -166,18 +178,21 @@ impl Layout {
     }
 
     /// The slot of a particle's index.
+    #[inline]
     pub fn slot_of(&self, index: usize) -> Slot {
         let index = index as u32;
         self.slot(index / self.columns, index % self.columns)
     }
 
     /// The column of a lane of a row's block, if the lane holds a particle.
+    #[inline]
     pub fn column(&self, block: usize, lane: usize) -> Option<u32> {
         let column = lane as u32 * self.strip + block as u32;
         (column < self.columns).then_some(column)
     }
 
     /// All slots in the order of the particles' indices.
+    #[inline]
     pub fn slots(&self) -> impl ExactSizeIterator<Item = Slot> + use<> {
         let layout = *self;
         let mut next = (0, 0, 0);

@@ -1,5 +1,6 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
+pub(crate) mod arrays;
 mod by_particle;
 mod cut;
 mod error;
@@ -24,6 +25,7 @@ mod surface;
 mod tearing;
 mod tears;
 
+pub(crate) use arrays::MapInline;
 pub use error::ClothError;
 pub use grain::ClothGrain;
 #[doc(hidden)]

@@ -1,5 +1,6 @@
 //! The stress in a cloth, from the forces of its springs.
 
+use crate::cloth::arrays::MapInline;
 use bevy::math::Vec3;
 
 use super::surface::Surface;
@@ -36,7 +37,7 @@ impl Stress {
         let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
         around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
         tensions(&mut |ends, tension| {
-            let [a, b] = ends.map(|end| places[end as usize]);
+            let [a, b] = ends.map_inline(|end| places[end as usize]);
             let half = 0.5 * a.distance(b) * tension;
             let direction = (b - a).normalize_or_zero();
             for end in ends {
@@ -58,7 +59,7 @@ impl Stress {
 
     /// The force along an edge, over the width of the cloth that bears it (N/m).
     pub fn along(&self, ends: [u32; 2], places: &[Vec3]) -> f32 {
-        let [from, to] = ends.map(|end| places[end as usize]);
+        let [from, to] = ends.map_inline(|end| places[end as usize]);
         let d = (to - from).normalize_or_zero();
         let mixed = 2.0 * d * Vec3::new(d.y, d.z, d.x);
         let of = |end: u32| {

@@ -1,5 +1,6 @@
 //! Cloth that tears where it is loaded too much.
 
+use crate::cloth::arrays::MapInline;
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
@@ -181,7 +182,7 @@ impl TearSearch {
         } = self;
         overloaded.clear();
         surface.for_each_thread(|ends, rest_length, along_warp| {
-            let [a, b] = ends.map(|end| places[end as usize]);
+            let [a, b] = ends.map_inline(|end| places[end as usize]);
             let stretch = a.distance(b) / rest_length - 1.0;
             let borne = strength.strain(ends, along_warp);
             if stretch > borne {
@@ -232,7 +233,7 @@ fn split(
     is_tip: &[bool],
 ) -> Option<(bool, u32, Vec<[u32; 2]>)> {
     let rest = surface.rest_positions();
-    let [from, to] = ends.map(|end| rest[end as usize]);
+    let [from, to] = ends.map_inline(|end| rest[end as usize]);
     let mut best: Option<(bool, u32, Vec<[u32; 2]>)> = None;
     for end in ends {
         if particles.is_pinned(end as usize) != Some(false) {
@@ -245,7 +246,7 @@ fn split(
             .as_ref()
             .is_none_or(|(known, _, others)| (runs, others.len()) > (*known, edges.len()));
         if !edges.is_empty() && is_better {
-            let whole = |edge: [u32; 2]| edge.map(|end| surface.origin_of(end));
+            let whole = |edge: [u32; 2]| edge.map_inline(|end| surface.origin_of(end));
             best = Some((runs, end, edges.into_iter().map(whole).collect()));
         }
     }

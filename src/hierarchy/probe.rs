@@ -1,5 +1,6 @@
 //! Regions to search a tree for.
 
+use crate::cloth::MapInline;
 use bevy::{
     math::{DQuat, DVec3, Isometry3d, Mat3, Vec3},
     reflect::Reflect,
@@ -51,7 +52,7 @@ impl Core {
             }
             Self::Cuboid { pose, half_size } => {
                 let rotation =
-                    DQuat::from_array(pose.rotation.to_array().map(f64::from)).normalize();
+                    DQuat::from_array(pose.rotation.to_array().map_inline(f64::from)).normalize();
                 let offset = point - Vec3::from(pose.translation).as_dvec3();
                 let local = rotation.inverse() * offset;
                 let half = half_size.as_dvec3();
@@ -65,6 +66,7 @@ impl Core {
     }
 
     /// Distance of `point` from the core (m), in `f64`: 0 inside, negative inside a half-space.
+    #[inline]
     pub fn distance(&self, point: Vec3) -> f64 {
         let offset = self.offset(point);
         match self {
@@ -94,6 +96,7 @@ impl Core {
         }
     }
 
+    #[inline]
     fn may_reach_beyond(&self, point: Vec3, reach: f32) -> bool {
         let reach = reach * ROUNDING + self.size() * 1.0e-5;
         let square = match *self {

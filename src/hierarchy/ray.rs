@@ -1,5 +1,6 @@
 //! Which face, or segment of a rope, a ray hits first: a top-down query with the ray as its probe.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Ray3d, Vec3, bounding::BoundingSphere};
 
 use super::{
@@ -60,7 +61,7 @@ impl RayQuery {
             .ok()?;
         self.query.clear();
         let probe = Probe {
-            core: Core::Segment(ends.map(|distance| ray.get_point(distance))),
+            core: Core::Segment(ends.map_inline(|distance| ray.get_point(distance))),
             radius: reach,
             particle_radius: 0.0,
         };
@@ -90,7 +91,7 @@ impl RayQuery {
             .flat_map(|owner| faces.range_of(owner))
             .filter_map(|face| {
                 let corners = faces.all()[face];
-                new(face, corners, hit(ray, corners.map(place))?)
+                new(face, corners, hit(ray, corners.map_inline(place))?)
             });
         hits.min_by(first)
     }
@@ -99,7 +100,7 @@ impl RayQuery {
 /// The weights of the ends of a segment of a rope of this radius (m) where a ray passes nearest to it, if it hits it, and the distance (m).
 fn hit_segment(ray: Ray3d, ends: [Vec3; 2], radius: f32) -> Option<([f32; 3], f32)> {
     let direction = ray.direction.as_dvec3();
-    let [a, b] = ends.map(|end| end.as_dvec3() - ray.origin.as_dvec3());
+    let [a, b] = ends.map_inline(|end| end.as_dvec3() - ray.origin.as_dvec3());
     // Seen along the ray, the segment is one in a plane, and the ray is its origin.
     let across = |at: DVec3| at.reject_from_normalized(direction);
     let (from, way) = (across(a), across(b) - across(a));
@@ -131,8 +132,8 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
 /// to its sign, for the edge that they share. So no ray passes between them.
 fn hit(ray: Ray3d, corners: [Vec3; 3]) -> Option<([f32; 3], f32)> {
     let direction = ray.direction.as_dvec3();
-    let [a, b, c] = corners.map(|corner| corner.as_dvec3() - ray.origin.as_dvec3());
-    let volumes = [b.cross(c), c.cross(a), a.cross(b)].map(|normal| direction.dot(normal));
+    let [a, b, c] = corners.map_inline(|corner| corner.as_dvec3() - ray.origin.as_dvec3());
+    let volumes = [b.cross(c), c.cross(a), a.cross(b)].map_inline(|normal| direction.dot(normal));
     let is_through = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
     let sum = volumes.iter().sum::<f64>();
     if !is_through || sum == 0.0 {
@@ -141,5 +142,8 @@ fn hit(ray: Ray3d, corners: [Vec3; 3]) -> Option<([f32; 3], f32)> {
     let weights = DVec3::from(volumes) / sum;
     let place = a * weights.x + b * weights.y + c * weights.z;
     let distance = place.dot(direction) as f32;
-    (distance >= 0.0).then_some((weights.to_array().map(|weight| weight as f32), distance))
+    (distance >= 0.0).then_some((
+        weights.to_array().map_inline(|weight| weight as f32),
+        distance,
+    ))
 }

@@ -1,5 +1,6 @@
 //! The motion of the damping frame through a tick.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3};
 
 use super::step::{DampingFrame, TickStep};
@@ -101,7 +102,7 @@ fn mean_displacement(blocks: &[Block]) -> (Vec3, f32) {
                 }
             }
         }
-        let [own, x, y, z] = sums.map(|lanes| lanes.into_iter().map(f64::from).sum::<f64>());
+        let [own, x, y, z] = sums.map_inline(|lanes| lanes.into_iter().map(f64::from).sum::<f64>());
         mass += own;
         moment += DVec3::new(x, y, z);
     }

@@ -1,5 +1,6 @@
 //! The limits of the envelope in which a cloth is simulated well.
 
+use crate::cloth::MapInline;
 use std::fmt;
 
 use bevy::reflect::Reflect;
@@ -112,8 +113,8 @@ impl ClothLimit {
             format!("{percent:.decimals$} %")
         };
         let [found, good] = match self {
-            Self::Stretch | Self::Tolerance => [quantity, good_up_to].map(percent),
-            _ => [quantity, good_up_to].map(digits),
+            Self::Stretch | Self::Tolerance => [quantity, good_up_to].map_inline(percent),
+            _ => [quantity, good_up_to].map_inline(digits),
         };
         let what = match self {
             Self::Stretch | Self::Tolerance => "",

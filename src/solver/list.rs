@@ -7,6 +7,7 @@
 //! order, which continues from these errors, needs that. Forward and back, it gained no energy in any mesh tried; in
 //! one direction alone, it gained ten times the initial energy.
 
+use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::Vec4;
@@ -267,7 +268,7 @@ impl SpringSolver for ListSolver {
         self.chains
             .for_each_pull(|ends, _, _, pull| visit(ends, scale * pull));
         for (packet, pull) in self.packets.iter().zip(&self.pulls) {
-            let [squares, pulls] = [packet.rest_square, *pull].map(|of| of.to_array());
+            let [squares, pulls] = [packet.rest_square, *pull].map_inline(|of| of.to_array());
             for at in 0..SPRINGS {
                 // The last packet of a colour is not full.
                 if (packet.from[at] as usize) < self.layout.len() {

@@ -14,6 +14,7 @@
 //! begins inside such a ball was moved there by nothing. So a displacement, relative to that of the place, is never
 //! longer than before.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::step::SubStep;
@@ -56,8 +57,8 @@ impl Balls {
 
     /// A centre when a part of the tick has passed (m).
     fn centre(&self, lane: usize, part: f32) -> Vec3 {
-        let [from, displacement] =
-            [self.from, self.displacement].map(|of| Vec3::from(of.map(|axis| axis[lane])));
+        let [from, displacement] = [self.from, self.displacement]
+            .map_inline(|of| Vec3::from(of.map_inline(|axis| axis[lane])));
         from + displacement * part
     }
 
@@ -215,8 +216,8 @@ impl MotionConstraints {
                         (balls.centre(lane, part), balls.radius[lane])
                     }),
                 };
-                let displacement =
-                    Vec3::from(balls.displacement.map(|axis| axis[lane])) / substep.count as f32;
+                let displacement = Vec3::from(balls.displacement.map_inline(|axis| axis[lane]))
+                    / substep.count as f32;
                 let place = block.position(lane);
                 let pushed = allowed.nearest(place) - place;
                 let moved = with_push(block.displacement(lane), pushed, displacement);

@@ -9,6 +9,7 @@
 //! Pins need not be exactly on the line. Beside it they turn the cloth by their distance times their pull, which is left out: by
 //! less than the sweep, as far as they count as on it.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::step::{PinMotion, TickStep};
@@ -141,7 +142,7 @@ impl Spin {
                 sums[3][lane] += mass * turned.dot(self.gravity);
             }
         }
-        let [momentum, inertia, carried, torque] = sums.map(|lanes| lanes.iter().sum());
+        let [momentum, inertia, carried, torque] = sums.map_inline(|lanes| lanes.iter().sum());
         Turning {
             momentum,
             inertia,

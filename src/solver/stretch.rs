@@ -1,5 +1,6 @@
 //! The stretch of springs beyond their rest lengths.
 
+use crate::cloth::MapInline;
 use bevy::reflect::Reflect;
 
 use crate::cloth::{ClothParticles, SpringKind, Springs};
@@ -36,7 +37,9 @@ impl Stretch {
     pub fn measure(springs: &Springs, particles: &ClothParticles) -> Self {
         let (mut structural, mut bound) = (1.0_f32, 1.0_f32);
         springs.for_each(|_, spring| {
-            let [a, b] = spring.ends.map(|end| particles.position_at(end as usize));
+            let [a, b] = spring
+                .ends
+                .map_inline(|end| particles.position_at(end as usize));
             let ratio = a.distance_squared(b) / (spring.rest_length * spring.rest_length);
             match spring.kind {
                 SpringKind::Structural => structural = structural.max(ratio),

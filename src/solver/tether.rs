@@ -4,6 +4,7 @@
 //! unilateral constraint from each particle straight to a pin has no such problem (long range attachments, Kim,
 //! Chentanez and Müller 2012). It never adds energy: it acts only beyond its length, and a pin does not move.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec2;
 
 use super::kernels::Kernels;
@@ -258,10 +259,12 @@ impl Tethers {
         };
         anchors.patterns.clear();
         for pattern in self.layers.iter().flat_map(|layer| &layer.patterns) {
-            let at = pattern.map(position);
-            anchors
-                .patterns
-                .push([at.map(|at| at.x), at.map(|at| at.y), at.map(|at| at.z)]);
+            let at = pattern.map_inline(position);
+            anchors.patterns.push([
+                at.map_inline(|at| at.x),
+                at.map_inline(|at| at.y),
+                at.map_inline(|at| at.z),
+            ]);
         }
     }
 

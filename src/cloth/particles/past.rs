@@ -1,5 +1,6 @@
 //! History of the particles' motion, for a second-order method.
 
+use crate::cloth::arrays::MapInline;
 use bevy::math::Vec3;
 
 use crate::cloth::lanes::{Block, LANES, Lanes, Layout};
@@ -16,12 +17,12 @@ impl Earlier {
 
     /// The displacement of a particle in the sub-step before the last (m).
     pub fn before(&self, lane: usize) -> Vec3 {
-        Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane]))
+        Vec3::from([0, 1, 2].map_inline(|axis| self.0[axis][lane]))
     }
 
     /// The change of a particle's displacement from the earlier of these sub-steps to the later (m).
     pub fn gain(&self, lane: usize) -> Vec3 {
-        Vec3::from([0, 1, 2].map(|axis| self.0[axis][lane] - self.0[axis + 3][lane]))
+        Vec3::from([0, 1, 2].map_inline(|axis| self.0[axis][lane] - self.0[axis + 3][lane]))
     }
 }
 
@@ -172,7 +173,7 @@ impl Past {
             return;
         };
         for from in [0, 3] {
-            let was = Vec3::from([0, 1, 2].map(|axis| earlier[from + axis][lane]));
+            let was = Vec3::from([0, 1, 2].map_inline(|axis| earlier[from + axis][lane]));
             let is = f(was).to_array();
             for axis in 0..3 {
                 earlier[from + axis][lane] = is[axis];

@@ -1,5 +1,6 @@
 //! Operations of the solver and the plugin on all particles.
 
+use crate::cloth::arrays::MapInline;
 use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::{
@@ -101,7 +102,7 @@ impl ClothParticles {
         for block in &self.blocks {
             let view = block.view();
             let square = |from: usize, lane: usize| {
-                let [a, b, c] = [0, LANES, 2 * LANES].map(|next| view[from + next + lane]);
+                let [a, b, c] = [0, LANES, 2 * LANES].map_inline(|next| view[from + next + lane]);
                 a * a + b * b + c * c
             };
             for lane in 0..LANES {
@@ -127,7 +128,7 @@ impl ClothParticles {
             [light.max(w), heavy.min(w)]
         });
         if ends[0] > 0.0 {
-            ends.map(f32::recip)
+            ends.map_inline(f32::recip)
         } else {
             [0.0; 2]
         }
@@ -139,6 +140,7 @@ impl ClothParticles {
     }
 
     /// Position (m) of a particle that exists.
+    #[inline]
     pub(crate) fn position_at(&self, index: usize) -> Vec3 {
         let Slot { block, lane } = self.layout.slot_of(index);
         self.blocks[block].position(lane)

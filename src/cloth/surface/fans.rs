@@ -1,6 +1,7 @@
 //! Where the corners of each particle's own faces are in memory.
 
 use super::faces::Faces;
+use crate::cloth::arrays::MapInline;
 use crate::cloth::lanes::{Layout, Slot};
 
 /// The corners of all faces, by the owners of the faces.
@@ -35,7 +36,8 @@ impl Fans {
                 fans.corners.push(layout.slot_of(particle as usize));
             }
             for face in own {
-                let of = face.map(|corner| fans.corner(start, layout.slot_of(corner as usize)));
+                let of =
+                    face.map_inline(|corner| fans.corner(start, layout.slot_of(corner as usize)));
                 fans.faces.push(of);
             }
             let ends = [fans.corners.len() as u32, fans.faces.len() as u32];
@@ -56,6 +58,7 @@ impl Fans {
     }
 
     /// The faces that a particle owns.
+    #[inline]
     pub fn of(&self, particle: u32) -> Fan<'_> {
         let particle = particle as usize;
         let [from, to] = [self.first[particle], self.first[particle + 1]];
@@ -69,7 +72,7 @@ impl Fans {
 impl Fan<'_> {
     /// Where the corners of a face are.
     pub fn slots(&self, face: [u32; 3]) -> [Slot; 3] {
-        face.map(|corner| self.corners[corner as usize])
+        face.map_inline(|corner| self.corners[corner as usize])
     }
 }
 

@@ -1,5 +1,6 @@
 //! Normals of a moved surface.
 
+use crate::cloth::arrays::MapInline;
 use bevy::math::Vec3;
 
 use super::Surface;
@@ -12,7 +13,7 @@ impl Surface {
         normals.clear();
         normals.resize(positions.len(), Vec3::ZERO);
         for face in self.triangles() {
-            let [a, b, c] = face.map(|corner| positions[corner as usize]);
+            let [a, b, c] = face.map_inline(|corner| positions[corner as usize]);
             // Its length is twice the area: larger faces weigh more.
             let normal = (b - a).cross(c - a);
             face.iter()

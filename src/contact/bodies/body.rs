@@ -1,5 +1,6 @@
 //! Dynamic colliders: bodies with a mass, which cloth pushes back.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
 
 use super::carriers::Carriers;
@@ -323,7 +324,7 @@ impl Body {
         let pose = moving.pose_at(passed);
         let arm = self.arm(&pose);
         let substeps = substep.count as f32;
-        let [go, turn, push, spin] = changes.map(DVec3::as_vec3);
+        let [go, turn, push, spin] = changes.map_inline(DVec3::as_vec3);
         self.change.velocity += push / dt;
         self.change.angular_velocity += spin / dt;
         // It continues from its current pose with its current velocity.

@@ -1,5 +1,6 @@
 //! The particles and triangles that each collider may touch in a tick, in blocks of eight.
 
+use crate::cloth::MapInline;
 use std::{ops::Range, sync::Arc};
 
 use crate::{
@@ -162,7 +163,7 @@ impl Candidates {
                     block + 1
                 };
                 let around = [beside, block + strip, beside + strip];
-                contact.around = around.map(|block| self.marks[block] - first[1] as u32);
+                contact.around = around.map_inline(|block| self.marks[block] - first[1] as u32);
             }
         }
         if is_left_out.is_some() {

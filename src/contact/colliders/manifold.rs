@@ -1,5 +1,6 @@
 //! The points at which two colliders are nearest to each other, by parry.
 
+use crate::cloth::MapInline;
 use bevy::math::{Isometry3d, Vec3};
 use parry3d::{
     math::Pose,
@@ -75,7 +76,7 @@ impl Manifold {
     /// Keeps the deepest point, and those that are farthest from each other.
     fn thin_out(&mut self) {
         let by_distance = |a: &usize, b: &usize| {
-            let [a, b] = [a, b].map(|at| self.points[*at].distance);
+            let [a, b] = [a, b].map_inline(|at| self.points[*at].distance);
             a.total_cmp(&b)
         };
         if let Some(deepest) = (0..self.points.len()).min_by(by_distance) {
@@ -88,7 +89,7 @@ impl Manifold {
                 squares.fold(f32::INFINITY, f32::min)
             };
             let farthest = (kept..self.points.len()).max_by(|&a, &b| {
-                let [a, b] = [a, b].map(|at| apart(&self.points[at]));
+                let [a, b] = [a, b].map_inline(|at| apart(&self.points[at]));
                 a.total_cmp(&b)
             });
             self.points.swap(kept, farthest.unwrap_or(kept));

@@ -226,9 +226,11 @@ impl ColliderSubstep<'_> {
     }
 
     /// The largest change of its distance from something that moves by these displacements (m).
+    #[inline]
     pub fn speed<const N: usize>(&self, displacements: [Vec3; N]) -> f32 {
-        let each = displacements.map(|displacement| (displacement - self.slide).length_squared());
-        each.into_iter().fold(0.0, f32::max).sqrt() + self.swing + self.deformation
+        let each = displacements.iter();
+        let squares = each.map(|displacement| (*displacement - self.slide).length_squared());
+        squares.fold(0.0, f32::max).sqrt() + self.swing + self.deformation
     }
 
     /// Largest displacement of its surface (m).

@@ -1,5 +1,6 @@
 //! Nearest points between a triangle and a point or a segment.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 /// The nearest points of a triangle and a core.
@@ -106,14 +107,14 @@ pub(crate) fn nearest(triangle: [Vec3; 3], segment: [Vec3; 2]) -> NearestPoints 
     let span = end - start;
     let square = span.length_squared();
     // NaN of a segment that is a point.
-    let along = triangle.map(|corner| (corner - start).dot(span) / square);
+    let along = triangle.map_inline(|corner| (corner - start).dot(span) / square);
     if along.iter().all(|along| *along <= 0.0) {
         nearest_to_end(triangle, start, 0.0)
     } else if along.iter().all(|along| *along >= 1.0) {
         nearest_to_end(triangle, end, 1.0)
     } else if along.iter().all(|along| (0.0..=1.0).contains(along)) {
         // Seen along the segment, they are those of a triangle and a point.
-        let seen = [0, 1, 2].map(|corner| (triangle[corner] - start) - span * along[corner]);
+        let seen = [0, 1, 2].map_inline(|corner| (triangle[corner] - start) - span * along[corner]);
         let weights = nearest_to_point(seen, Vec3::ZERO);
         let along: f32 = (0..3).map(|corner| weights[corner] * along[corner]).sum();
         NearestPoints {
@@ -214,8 +215,8 @@ pub(crate) fn area_within(corners: [Vec3; 3], centre: Vec3, radius: f32) -> f32 
         if root <= 0.0 || quadratic == 0.0 {
             return sector(from, to);
         }
-        let [enter, leave] =
-            [-root.sqrt(), root.sqrt()].map(|root| ((root - linear) / quadratic).clamp(0.0, 1.0));
+        let [enter, leave] = [-root.sqrt(), root.sqrt()]
+            .map_inline(|root| ((root - linear) / quadratic).clamp(0.0, 1.0));
         let (inside, outside) = (from + along * enter, from + along * leave);
         sector(from, inside) + normal.dot(inside.cross(outside)) / 2.0 + sector(outside, to)
     };

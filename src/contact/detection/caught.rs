@@ -1,6 +1,7 @@
 //! Cloth that is caught between two colliders.
 
 use super::Detection;
+use crate::cloth::MapInline;
 use crate::{cloth::ClothParticles, contact::candidates::Touch};
 
 /// Two colliders push against each other where the cosine of the angle between their normals is less: in a gap that opens by less
@@ -24,7 +25,8 @@ impl Detection {
                         other.is_ok_and(|at| self.candidates.depth_of(&others[at]) > 0.0);
                     let normals = || {
                         let place = particles.position_at(particle as usize);
-                        [first, second].map(|touch| touch.collider.nearest(1.0, place).normal)
+                        [first, second]
+                            .map_inline(|touch| touch.collider.nearest(1.0, place).normal)
                     };
                     is_pushed && {
                         let [first, second] = normals();

@@ -1,5 +1,6 @@
 //! Cloth that begins a tick deep inside a collider, which appeared or was teleported there.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use crate::{
@@ -220,11 +221,11 @@ impl Embedding {
         pieces.clear();
         pieces.resize(inside.len(), Piece::default());
         for face in surface.faces().all() {
-            let corners = face.map(|corner| index[corner as usize].checked_sub(1));
+            let corners = face.map_inline(|corner| index[corner as usize].checked_sub(1));
             let Some(at) = corners.into_iter().flatten().next() else {
                 continue;
             };
-            let places = face.map(|corner| particles.position_at(corner as usize));
+            let places = face.map_inline(|corner| particles.position_at(corner as usize));
             let [a, b, c] = places;
             pieces[at as usize].normal += (b - a).cross(c - a) / 2.0;
             for (i, j) in [(0, 1), (1, 2), (2, 0)] {
@@ -232,7 +233,7 @@ impl Embedding {
                     continue;
                 };
                 join(inside, first, second);
-                let [first, second] = [first, second].map(|at| inside[at as usize]);
+                let [first, second] = [first, second].map_inline(|at| inside[at as usize]);
                 let side = first.place.distance(second.place).max(spacing);
                 let ends = (first.place + first.out).distance(second.place + second.out);
                 let is_pinned = first.is_pinned || second.is_pinned;
@@ -305,7 +306,7 @@ impl Embedding {
 
     fn range(&self, id: usize) -> [usize; 2] {
         // Callers count upwards.
-        [id, id.saturating_add(1)].map(|id| self.all.partition_point(|one| one.id < id))
+        [id, id.saturating_add(1)].map_inline(|id| self.all.partition_point(|one| one.id < id))
     }
 
     /// Blocks of the particles that leave a collider by another way than the nearest.
@@ -401,7 +402,7 @@ fn root_of(inside: &[Inside], mut at: u32) -> u32 {
 
 /// Makes two particles one piece.
 fn join(inside: &mut [Inside], first: u32, second: u32) {
-    let [first, second] = [first, second].map(|at| root_of(inside, at));
+    let [first, second] = [first, second].map_inline(|at| root_of(inside, at));
     inside[first.max(second) as usize].piece = first.min(second);
 }
 

@@ -5,6 +5,7 @@ use crate::{cloth::ClothParticles, contact::colliders::MovingCollider};
 /// Whether a triangle hangs from a pin inside a collider or within a particle's radius (m) of it at the beginning of
 /// the tick, some sub-steps ago, or all of its corners are pinned. Such a triangle cannot be pushed out: the attempt
 /// would push the hanging cloth in every sub-step.
+#[inline]
 pub(super) fn is_sewn_on(
     face: &[u32; 3],
     collider: &MovingCollider,

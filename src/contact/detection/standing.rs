@@ -1,6 +1,7 @@
 //! Bodies that stand on other colliders, through the cloth between them.
 
 use super::{Detection, send_on};
+use crate::cloth::MapInline;
 use crate::{
     cloth::ClothParticles,
     contact::{
@@ -40,7 +41,7 @@ impl Detection {
             // On another body it is carried.
             let fixed = (self.touches.iter()).filter(|other| other.collider.body.is_none());
             for ground in fixed {
-                let pair = [touch, ground].map(|touch| (touch.id, &touch.collider));
+                let pair = [touch, ground].map_inline(|touch| (touch.id, &touch.collider));
                 self.supports.find(pair, &near, passed);
             }
         }

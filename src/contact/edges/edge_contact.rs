@@ -1,5 +1,6 @@
 //! Tests of a cloth triangle against the edges of a shape.
 
+use crate::cloth::MapInline;
 use bevy::math::{Isometry3d, Vec3};
 
 use crate::contact::colliders::{ColliderShape, SharpEdge, nearest};
@@ -106,6 +107,7 @@ impl<'a> EdgeTest<'a> {
 
     /// The contact on the side of the shape on which the triangle lies. Unless that is known, the outward direction at the triangle's
     /// middle says it. Where that is unclear, the shorter way out does.
+    #[inline]
     pub fn contact(&self) -> Option<EdgeContact> {
         let [above, below] = self.found;
         let is_over =
@@ -174,6 +176,7 @@ pub(crate) fn bounds_of([a, b, c]: [Vec3; 3], around: f32) -> [Vec3; 2] {
 }
 
 /// The contact of the part of an edge that touches a triangle, or passes through it, on the side of a sign.
+#[inline]
 fn over([from, to]: [Placed; 2], normal: Vec3, sign: f32, near: f32) -> EdgeContact {
     let [first, last] = [from.height * sign, to.height * sign];
     // The middle of it if it lies flat, so that the contact does not jump from end to end.
@@ -257,6 +260,7 @@ impl Plane {
     ///   |  edge, seen from its end: a point x in the triangle's plane
     ///   x-----o   from x inwards to the triangle's side o: the triangle moves outwards by this much
     /// ```
+    #[inline]
     fn beside(
         &self,
         [from, to]: [Placed; 2],
@@ -273,7 +277,9 @@ impl Plane {
         let in_plane = edge.outward - self.normal * self.normal.dot(edge.outward);
         let outwards = in_plane.try_normalize()?;
         // Change of the weights per metre inwards.
-        let [v, w] = self.gradients.map(|gradient| -gradient.dot(outwards));
+        let [v, w] = self
+            .gradients
+            .map_inline(|gradient| -gradient.dot(outwards));
         let change = Vec3::new(-v - w, v, w);
         let (mut enters, mut leaves) = (f32::NEG_INFINITY, f32::INFINITY);
         for corner in 0..3 {
@@ -307,6 +313,7 @@ fn is_steep([from, to]: [Placed; 2], edge: &SharpEdge) -> bool {
 }
 
 /// The part of a line that is above or below a triangle.
+#[inline]
 fn clip([from, to]: [Placed; 2]) -> Option<[Placed; 2]> {
     let (mut begin, mut end) = (0.0_f32, 1.0_f32);
     for corner in 0..3 {
@@ -325,6 +332,7 @@ fn clip([from, to]: [Placed; 2]) -> Option<[Placed; 2]> {
 }
 
 /// Weights of a point of the triangle itself.
+#[inline]
 fn within(weights: Vec3) -> [f32; 3] {
     let inside = weights.max(Vec3::ZERO);
     (inside / inside.element_sum()).to_array()

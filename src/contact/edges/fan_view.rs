@@ -1,5 +1,6 @@
 //! A particle's triangles in the frame of a shape.
 
+use crate::cloth::MapInline;
 use bevy::math::{Affine3A, Vec3};
 
 use crate::{
@@ -46,6 +47,7 @@ impl FanView {
     }
 
     /// The corners (m).
+    #[inline]
     pub fn corners(&self) -> &[Vec3] {
         &self.corners
     }
@@ -53,6 +55,6 @@ impl FanView {
     /// A triangle of some of the corners (m).
     #[inline]
     pub fn triangle(&self, face: [u32; 3]) -> [Vec3; 3] {
-        face.map(|corner| self.corners[corner as usize])
+        face.map_inline(|corner| self.corners[corner as usize])
     }
 }

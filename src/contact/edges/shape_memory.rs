@@ -94,6 +94,7 @@ struct Side {
 
 impl Side {
     /// The side, if that was no more than a sub-step ago.
+    #[inline]
     fn lately(self, near: &Nearness) -> Option<bool> {
         let is_recent = self.tick == near.tick && near.substep <= self.substep + 1;
         is_recent.then_some(self.is_below)
@@ -294,6 +295,7 @@ impl ShapeMemory {
     }
 
     /// Displacement of everything before one of a particle's triangles, in view, can touch an edge (m).
+    #[inline]
     pub fn clearance(&mut self, particle: u32, view: &FanView, near: Nearness) -> f32 {
         let (reach, extent) = (near.reach, view.extent);
         let known = &mut self.places[particle as usize];

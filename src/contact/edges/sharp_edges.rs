@@ -3,6 +3,7 @@
 //! A triangle whose corners are all outside a solid can only intersect it where one of the solid's edges passes through
 //! the triangle. So only edges are tested beside the particles, and nothing for flat surfaces.
 
+use crate::cloth::MapInline;
 use bevy::math::{Affine3A, Vec3};
 
 use super::{
@@ -92,7 +93,7 @@ impl<'a> EdgeMotion<'a> {
         let around = speed + self.reach;
         let closest = |part: f32| {
             let pose = self.of.pose_at(part);
-            let triangle = [0, 1, 2].map(|corner| {
+            let triangle = [0, 1, 2].map_inline(|corner| {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
@@ -271,7 +272,7 @@ fn push_point(
         ..
     } = *contact;
     let normal = motion.of.pose.rotation * normal;
-    let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
+    let parts = [0, 1, 2].map_inline(|corner| weights[corner] * corners.inverse_masses[corner]);
     let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
     // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
     let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);

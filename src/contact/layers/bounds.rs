@@ -17,6 +17,7 @@ impl Bounds {
         max: Vec3A::NEG_INFINITY,
     };
 
+    #[inline]
     pub fn with(&self, point: Vec3A) -> Self {
         Self {
             min: self.min.min(point),
@@ -24,6 +25,7 @@ impl Bounds {
         }
     }
 
+    #[inline]
     pub fn join(&self, other: &Self) -> Self {
         Self {
             min: self.min.min(other.min),
@@ -31,11 +33,13 @@ impl Bounds {
         }
     }
 
+    #[inline]
     pub fn overlaps(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
     /// Squared distance between two boxes (m²), 0 if they overlap.
+    #[inline]
     pub fn distance_squared(&self, other: &Self) -> f32 {
         let gap = (self.min - other.max).max(other.min - self.max);
         gap.max(Vec3A::ZERO).length_squared()

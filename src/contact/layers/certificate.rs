@@ -8,6 +8,7 @@
 //! Pairs that are not contacts are a thickness apart without a test. If all vertices with faces and all edges with
 //! edges are apart, no two triangles intersect.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair, work::Counts};
@@ -179,13 +180,13 @@ fn lack(pair: &NearPair, members: &Members) -> Option<f32> {
 fn part(pair: &NearPair, lack: f32, members: &mut Members) {
     let normal = pair.normal;
     let states = members.states(pair.members);
-    let along = states.map(|state| normal.dot(state.place));
+    let along = states.map_inline(|state| normal.dot(state.place));
     let first = (0..pair.split).min_by(|&a, &b| along[a].total_cmp(&along[b]));
     let second = (pair.split..4).max_by(|&a, &b| along[a].total_cmp(&along[b]));
     let (Some(first), Some(second)) = (first, second) else {
         return;
     };
-    let [a, b] = [first, second].map(|index| states[index]);
+    let [a, b] = [first, second].map_inline(|index| states[index]);
     let mobility = a.inverse_mass + b.inverse_mass;
     if mobility == 0.0 {
         return;

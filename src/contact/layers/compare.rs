@@ -1,5 +1,6 @@
 //! Compares the features of two patches: vertices with faces, and edges with edges.
 
+use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::{Vec3, Vec3A};
@@ -58,13 +59,13 @@ pub(super) fn compare(
         used,
         reserve,
     } = *place;
-    let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
+    let [a, b] = pair.of.map_inline(|patch| &motion.patches[patch as usize]);
     let ahead = (AHEAD * used)
         .min(MOST_AHEAD * spacing)
         .max(LEAST_AHEAD * thickness);
     let listed = used + ahead;
     *work = work.saturating_sub(1);
-    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
+    let sides = pair.of.map_inline(|patch| Side::of(motion, cloths, patch));
     let boxes = sides[0].bounds.distance_squared(&sides[1].bounds).sqrt();
     let apart = boxes.max(separation(&sides, a.start - b.start, b.start)) - thickness;
     if apart > ENOUGH * used + reserve {
@@ -76,7 +77,7 @@ pub(super) fn compare(
         scratch.gather(side);
     }
     let is_one_cloth = a.cloth == b.cloth;
-    let [longest, other] = [0, 1].map(|side| sides[side].sheet.surface().spacing().longest);
+    let [longest, other] = [0, 1].map_inline(|side| sides[side].sheet.surface().spacing().longest);
     let longest = longest.max(other);
     let tolerance = ROUNDING * (LONGEST * listed + thickness + longest);
     scratch.hits.least = f32::INFINITY;
@@ -158,7 +159,7 @@ impl Comparison {
 /// near: so the error does not grow with the distance from the frame's.
 fn separation(sides: &[Side; 2], along: Vec3A, origin: Vec3A) -> f32 {
     let along = along.normalize_or_zero();
-    let [front, back] = sides.each_ref().map(|side| {
+    let [front, back] = sides.each_ref().map_inline(|side| {
         let places = side.all();
         places.map(|place| along.dot(place - origin))
     });
@@ -173,29 +174,34 @@ pub(super) fn cross(
     joined: &Joined,
     work: &mut usize,
 ) -> bool {
-    let sides = pair.of.map(|patch| Side::of(motion, cloths, patch));
+    let sides = pair.of.map_inline(|patch| Side::of(motion, cloths, patch));
     if !sides[0].bounds.overlaps(&sides[1].bounds) {
         return false;
     }
-    let [a, b] = pair.of.map(|patch| motion.patches[patch as usize].cloth);
+    let [a, b] = pair
+        .of
+        .map_inline(|patch| motion.patches[patch as usize].cloth);
     let directions = 1 + usize::from(pair.of[0] != pair.of[1]);
     [[0, 1], [1, 0]][..directions].iter().any(|of| {
-        let [own, other] = of.map(|side| &sides[side]);
+        let [own, other] = of.map_inline(|side| &sides[side]);
         let edges = own.sheet.edges_of(own.patch);
         let faces = other.sheet.faces_of(other.patch);
         *work = work.saturating_sub(CROSSING * edges.len() * faces.len());
         edges.iter().any(|edge| {
             let bounds = own.bounds(*edge);
-            let ends = edge.map(|end| own.particle(end));
-            let places = edge.map(|end| own.place(end).as_dvec3());
+            let ends = edge.map_inline(|end| own.particle(end));
+            let places = edge.map_inline(|end| own.place(end).as_dvec3());
             bounds.overlaps(&other.bounds)
                 && faces.iter().any(|face| {
-                    let corners = face.map(|corner| other.particle(corner));
+                    let corners = face.map_inline(|corner| other.particle(corner));
                     let is_joined = a == b && ends.iter().any(|end| corners.contains(end))
                         || joined.join(&own.global(ends), &other.global(corners));
                     !is_joined
                         && other.bounds(*face).overlaps(&bounds)
-                        && passes(places, face.map(|corner| other.place(corner).as_dvec3()))
+                        && passes(
+                            places,
+                            face.map_inline(|corner| other.place(corner).as_dvec3()),
+                        )
                 })
         })
     })
@@ -257,8 +263,11 @@ impl<'a> Side<'a> {
     }
 
     /// The places of its cloth's particles among those of all cloths.
-    fn global<const N: usize>(&self, particles: [u32; N]) -> [u32; N] {
-        particles.map(|particle| self.first_particle + particle)
+    fn global<const N: usize>(&self, mut particles: [u32; N]) -> [u32; N] {
+        for particle in &mut particles {
+            *particle += self.first_particle;
+        }
+        particles
     }
 
     fn bounds<const N: usize>(&self, feature: [u16; N]) -> Bounds {
@@ -302,7 +311,7 @@ struct Features<'a> {
 
 impl Features<'_> {
     fn vertices_with_faces(&mut self, of: [usize; 2]) {
-        let [own, other] = of.map(|side| &self.sides[side]);
+        let [own, other] = of.map_inline(|side| &self.sides[side]);
         let (vertices, faces) = (own.features(self.points).0, other.features(self.points).1);
         self.hits.of.clear();
         let reach_squared = (self.listed + self.thickness).powi(2);
@@ -310,7 +319,7 @@ impl Features<'_> {
         let faces = other.sheet.faces_of(other.patch);
         for hit in &self.hits.of {
             let vertex = own.particles[hit.first];
-            let corners = faces[hit.second].map(|corner| other.particle(corner));
+            let corners = faces[hit.second].map_inline(|corner| other.particle(corner));
             if self.is_one_cloth && corners.contains(&vertex) {
                 continue;
             }
@@ -321,7 +330,7 @@ impl Features<'_> {
             }
             let thickness = self.allowed(self.thickness, |rest| {
                 let at_rest = |particle: u32| rest[particle as usize];
-                vertex_to_face(at_rest(vertex), corners.map(at_rest))
+                vertex_to_face(at_rest(vertex), corners.map_inline(at_rest))
             });
             let distance = hit.square.sqrt() - self.tolerance;
             let near = Candidate::new(particles, VERTEX_AND_FACE, thickness, distance);
@@ -331,15 +340,15 @@ impl Features<'_> {
 
     fn edges_with_edges(&mut self) {
         let [own, other] = self.sides;
-        let [edges, others] = [own, other].map(|side| side.features(self.points).2);
+        let [edges, others] = [own, other].map_inline(|side| side.features(self.points).2);
         let wanted = EDGES * self.thickness;
         self.hits.of.clear();
         let reach_squared = (self.listed + wanted).powi(2);
         near_edges(&edges, &others, reach_squared, self.hits);
-        let [edges, others] = [own, other].map(|side| side.sheet.edges_of(side.patch));
+        let [edges, others] = [own, other].map_inline(|side| side.sheet.edges_of(side.patch));
         for hit in &self.hits.of {
-            let ends = edges[hit.first].map(|end| own.particle(end));
-            let other_ends = others[hit.second].map(|end| other.particle(end));
+            let ends = edges[hit.first].map_inline(|end| own.particle(end));
+            let other_ends = others[hit.second].map_inline(|end| other.particle(end));
             let is_known = self.is_one_patch && hit.second <= hit.first;
             let is_joined = self.is_one_cloth && ends.iter().any(|end| other_ends.contains(end));
             if is_known || is_joined {
@@ -350,7 +359,7 @@ impl Features<'_> {
                 continue;
             }
             let thickness = self.allowed(wanted, |rest| {
-                let at_rest = |edge: [u32; 2]| edge.map(|end| rest[end as usize]);
+                let at_rest = |edge: [u32; 2]| edge.map_inline(|end| rest[end as usize]);
                 edge_to_edge(at_rest(ends), at_rest(other_ends))
             });
             let distance = hit.square.sqrt() - self.tolerance;

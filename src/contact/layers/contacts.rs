@@ -11,6 +11,7 @@ use super::{
     patch_pair::Candidate,
     work::Counts,
 };
+use crate::cloth::MapInline;
 
 /// The pairs that may touch in the sub-step.
 #[derive(Debug, Default, Clone)]
@@ -36,10 +37,11 @@ impl Contacts {
         near.has_changed = false;
         let add = |candidate: &Candidate, of: [u32; 2], near: f32| {
             let particles = candidate.particles;
-            let members_of = particles.map(|particle| members.of(particle, cloths, motion, before));
+            let members_of =
+                particles.map_inline(|particle| members.of(particle, cloths, motion, before));
             let split = candidate.split as usize;
             let nearest = candidate.nearest;
-            let [a, b] = of.map(|cloth| cloths[cloth as usize].settings.friction);
+            let [a, b] = of.map_inline(|cloth| cloths[cloth as usize].settings.friction);
             let mut before = NOBODY;
             if split == VERTEX_AND_FACE {
                 let last = &mut members.last_of[members_of[0] as usize];

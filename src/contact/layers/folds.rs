@@ -12,6 +12,7 @@
 //! is measured again once any two particles of the cloths may have come nearer by its slack.
 
 use super::{motion::Motion, near_patches::Meets, participant::Participant};
+use crate::cloth::MapInline;
 
 /// Smallest slack of an unfolded window, as a fraction of the thickness or of a flat one's slack. With less, the motion of
 /// all would soon use it up; a pair of patches has a slack of its own.
@@ -125,11 +126,12 @@ impl Folds {
         let is_folded = |window: usize| until[first_window + window] == FOLDED;
         if *pairs & bit == 0 && windows.all(is_folded) {
             *pairs |= bit;
-            found(of.map(|patch| first_patch + patch));
+            found(of.map_inline(|patch| first_patch + patch));
         }
     }
 
     /// Whether two neighbours cannot touch.
+    #[inline]
     pub fn keep_apart(&self, cloths: &[Participant], motion: &Motion, of: [u32; 2]) -> bool {
         let Some((cloth, of)) = motion.of_one_cloth(of) else {
             return false;

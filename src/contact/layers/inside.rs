@@ -1,6 +1,7 @@
 //! Cloths that begin inside each other.
 
 use super::{MutualContact, pair::VERTEX_AND_FACE, participant::Participant};
+use crate::cloth::MapInline;
 
 /// Distance of particles that are inside of another cloth, as a fraction of the thickness.
 const INSIDE: f32 = 0.5;
@@ -30,13 +31,14 @@ impl MutualContact {
         is_new: impl Fn(usize) -> bool,
     ) -> Option<Inside> {
         let near = |cloths_of: [usize; 2]| {
-            let [a, b] = cloths_of.map(|cloth| cloths[cloth].settings.thickness);
+            let [a, b] = cloths_of.map_inline(|cloth| cloths[cloth].settings.thickness);
             INSIDE * (a + b) / 2.0
         };
         let mut inside = Vec::new();
         for candidate in self.near.all() {
             let [vertex, corner, ..] = candidate.particles;
-            let [(own, vertex), (other, _)] = [vertex, corner].map(|at| self.motion.cloth_of(at));
+            let [(own, vertex), (other, _)] =
+                [vertex, corner].map_inline(|at| self.motion.cloth_of(at));
             let of = [own, other];
             let is_vertex_with_face = candidate.split as usize == VERTEX_AND_FACE;
             if is_vertex_with_face

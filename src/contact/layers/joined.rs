@@ -24,6 +24,7 @@ impl Joined {
     }
 
     /// Whether a particle of one feature is sewn to one of the other.
+    #[inline]
     pub fn join(&self, own: &[u32], other: &[u32]) -> bool {
         !self.pairs.is_empty()
             && own.iter().any(|&own| {

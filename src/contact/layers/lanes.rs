@@ -3,6 +3,7 @@
 //! Rounded a little differently than those of [`Nearest`](super::pair::Nearest): good enough to tell which pairs to
 //! list, not for their contact.
 
+use crate::cloth::MapInline;
 use std::ops::{Add, Mul, Sub};
 
 use multiversion::multiversion;
@@ -117,7 +118,7 @@ type Vectors = [Lanes; 3];
 
 #[inline(always)]
 fn vectors(points: &Points) -> Vectors {
-    points.map(Lanes)
+    points.map_inline(Lanes)
 }
 
 #[inline(always)]
@@ -233,7 +234,12 @@ fn near<const N: usize, const M: usize>(
                 if from_other.0[l] > reach_squared {
                     continue;
                 }
-                let feature = group.map(|point| point.map(|axis| Lanes::all(axis[l])));
+                let mut feature = [[Lanes::all(0.0); 3]; N];
+                for corner in 0..N {
+                    for axis in 0..3 {
+                        feature[corner][axis] = Lanes::all(group[corner][axis][l]);
+                    }
+                }
                 let squares = squares(&feature, others);
                 hits.compared += 1;
                 least = least.min(squares.beyond(reach_squared));
@@ -283,7 +289,7 @@ pub(super) fn near_edges(
 /// Squared distances of a vertex from eight faces (m²).
 #[inline(always)]
 fn vertex_to_faces(vertex: &Vectors, faces: [&Points; 3]) -> Lanes {
-    let [a, b, c] = faces.map(vectors);
+    let [a, b, c] = faces.map_inline(vectors);
     let (ab, ac, bc) = (minus(&b, &a), minus(&c, &a), minus(&c, &b));
     let (from_a, from_b) = (minus(vertex, &a), minus(vertex, &b));
     let (d00, d01, d11) = (dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac));
@@ -306,7 +312,7 @@ fn vertex_to_faces(vertex: &Vectors, faces: [&Points; 3]) -> Lanes {
 #[inline(always)]
 fn edge_to_edges([p, q]: [&Vectors; 2], edges: [&Points; 2]) -> Lanes {
     let along = minus(q, p);
-    let [r, s] = edges.map(vectors);
+    let [r, s] = edges.map_inline(vectors);
     let (other, from) = (minus(&s, &r), minus(p, &r));
     let (a, e, b) = (
         dot(&along, &along),

@@ -1,5 +1,6 @@
 //! The particles of pairs that may touch in a sub-step, in one array.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{mean_pushes::MeanPushes, motion::Motion, origin::Origin, participant::Participant};
@@ -33,6 +34,7 @@ struct Member {
 
 impl Member {
     /// Its state. `before` has the positions before colliders pushed.
+    #[inline]
     fn state(&self, cloths: &[Participant], motion: &Motion, before: &Origin) -> State {
         let cloth = &cloths[self.cloth as usize];
         let Slot { block, lane } = self.slot;
@@ -89,11 +91,13 @@ impl Members {
         self.last_of.clear();
     }
 
+    #[inline]
     pub fn len(&self) -> usize {
         self.of.len()
     }
 
     /// The member of a particle, which is added if it is new. `before` has the positions before colliders pushed.
+    #[inline]
     pub fn of(
         &mut self,
         particle: u32,
@@ -169,7 +173,7 @@ impl Members {
     /// The four particles of a pair.
     #[inline]
     pub fn states(&self, of: [u32; 4]) -> [&State; 4] {
-        of.map(|member| &self.states[member as usize])
+        of.map_inline(|member| &self.states[member as usize])
     }
 
     /// Whether none moved farther than this (m), and a collider or a pin holds some.

@@ -10,6 +10,7 @@
 //! `used` only grows: by the deviation from the reference, however often that is taken anew. Trembling around the
 //! reference does not add up. Patches that move alike use nothing up.
 
+use crate::cloth::MapInline;
 use bevy::math::{Vec3A, Vec4};
 
 use super::{bounds::Bounds, participant::Participant};
@@ -34,20 +35,24 @@ pub(super) struct PatchMotion {
 
 impl PatchMotion {
     /// Upper bound of all that its particles have moved against each other (m).
+    #[inline]
     pub fn used(&self) -> f32 {
         self.earlier + self.deviation[1]
     }
 
     /// Zero of [`used`](Self::used) for a comparison at the beginning of the sub-step (m).
+    #[inline]
     pub fn used_before(&self) -> f32 {
         self.earlier - self.deviation[0]
     }
 
     /// Upper bound of all that its particles had moved against each other before the sub-step (m).
+    #[inline]
     pub fn used_at_start(&self) -> f32 {
         self.earlier + self.deviation[0]
     }
 
+    #[inline]
     pub fn bounds_at_start(&self) -> Bounds {
         let half = self.half + self.deviation[0];
         Bounds {
@@ -56,6 +61,7 @@ impl PatchMotion {
         }
     }
 
+    #[inline]
     pub fn bounds_at_end(&self) -> Bounds {
         let half = self.half + self.deviation[1];
         Bounds {
@@ -137,18 +143,21 @@ impl Motion {
     }
 
     /// The cloth of a particle, and its index there.
+    #[inline]
     pub fn cloth_of(&self, particle: u32) -> (usize, usize) {
         let cloth = self.firsts.partition_point(|first| first[0] <= particle) - 1;
         (cloth, (particle - self.firsts[cloth][0]) as usize)
     }
 
     /// The cloth of two patches, and their indices there, if both are of one.
+    #[inline]
     pub fn of_one_cloth(&self, of: [u32; 2]) -> Option<(usize, [u32; 2])> {
-        let [a, b] = of.map(|patch| self.patches[patch as usize].cloth as usize);
-        (a == b).then(|| (a, of.map(|patch| patch - self.firsts[a][1])))
+        let [a, b] = of.map_inline(|patch| self.patches[patch as usize].cloth as usize);
+        (a == b).then(|| (a, of.map_inline(|patch| patch - self.firsts[a][1])))
     }
 
     /// Whether two patches are [neighbours](super::folds) in a grid.
+    #[inline]
     pub fn are_neighbours(&self, cloths: &[Participant], of: [u32; 2]) -> bool {
         let of = self.of_one_cloth(of);
         of.is_some_and(|(cloth, of)| cloths[cloth].sheet.windows().are_neighbours(of))
@@ -187,6 +196,7 @@ impl Motion {
     }
 
     /// Puts a particle elsewhere at the end of the sub-step.
+    #[inline]
     pub fn put(&mut self, cloths: &[Participant], particle: u32, place: Vec3A) {
         let by = place - std::mem::replace(&mut self.end[particle as usize], place);
         if by == Vec3A::ZERO {

@@ -21,6 +21,7 @@ use super::{
     patch_pair::{Candidate, PatchPair, Place, measure},
     work::{Counts, MOST_LISTED},
 };
+use crate::cloth::MapInline;
 
 /// Rest of that clearance, as a fraction, from which on contacts are measured together with others.
 const SOON: f32 = 0.5;
@@ -105,7 +106,9 @@ impl NearFeatures {
     /// Calls `add` with each contact, the two cloths, and the approach for which it is one (m).
     pub fn contacts(&self, motion: &Motion, mut add: impl FnMut(&Candidate, [u32; 2], f32)) {
         for pair in self.pairs.iter().filter(|pair| pair.has_contacts()) {
-            let cloths = pair.of.map(|patch| motion.patches[patch as usize].cloth);
+            let cloths = pair
+                .of
+                .map_inline(|patch| motion.patches[patch as usize].cloth);
             let candidates = &self.candidates[pair.candidates()];
             for candidate in &candidates[..pair.contacts as usize] {
                 add(candidate, cloths, pair.near);

@@ -3,6 +3,7 @@
 //! A box around each patch leaves it clearance to move. A patch that leaves its box gets another one, for which the trees
 //! are searched from the top down.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{bounds::Bounds, motion::Motion, participant::Participant, sheet::Node};
@@ -32,8 +33,9 @@ pub(super) struct Meets<'a, F> {
 }
 
 impl<F: Fn(usize, usize) -> bool> Meets<'_, F> {
+    #[inline]
     pub fn of(&self, a: usize, b: usize) -> bool {
-        let [first, second] = [a, b].map(|cloth| &self.cloths[cloth]);
+        let [first, second] = [a, b].map_inline(|cloth| &self.cloths[cloth]);
         if a == b {
             first.settings.with_itself && !first.is_fixed
         } else {
@@ -110,6 +112,7 @@ impl PatchBoxes {
     }
 
     /// Whether the boxes of two patches overlap.
+    #[inline]
     pub fn overlap(&self, [a, b]: [u32; 2]) -> bool {
         a == b || self.boxes[a as usize].overlaps(&self.boxes[b as usize])
     }

@@ -1,5 +1,6 @@
 //! Earlier positions of particles, to measure their approach since.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::participant::Participant;
@@ -22,7 +23,7 @@ impl Origin {
             places.clear();
             places.extend(cloth.particles.blocks().iter().map(|block| {
                 let view = block.view();
-                [X, Y, Z].map(|axis| std::array::from_fn(|l| view[axis + l]))
+                [X, Y, Z].map_inline(|axis| std::array::from_fn(|l| view[axis + l]))
             }));
             for (block, lane) in (0..strip).flat_map(|block| (0..LANES).map(move |l| (block, l))) {
                 if layout.column(block, lane).is_none() {
@@ -38,9 +39,10 @@ impl Origin {
     }
 
     /// Displacement of a particle since, in its cloth's frame (m); `None` if nothing is stored.
+    #[inline]
     pub fn moved(&self, cloth: usize, slot: Slot, place: Vec3) -> Option<Vec3> {
         let places = self.cloths.get(cloth)?;
-        let before = places[slot.block].map(|axis| axis[slot.lane]);
+        let before = places[slot.block].map_inline(|axis| axis[slot.lane]);
         Some(place - Vec3::from(before))
     }
 
@@ -54,7 +56,7 @@ impl Origin {
         match (self.cloths.first(), cloths.first()) {
             (Some(places), Some(cloth)) => {
                 let at = cloth.particles.layout().slot_of(cloth.particles.len() / 2);
-                let place = places[at.block].map(|axis| axis[at.lane]);
+                let place = places[at.block].map_inline(|axis| axis[at.lane]);
                 let moved =
                     cloth.particles.blocks()[at.block].position(at.lane) - Vec3::from(place);
                 cloth.vector(moved)

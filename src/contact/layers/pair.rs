@@ -1,5 +1,6 @@
 //! Pairs of features: a vertex and a face, or two edges.
 
+use crate::cloth::MapInline;
 use bevy::math::{Vec3, Vec3A};
 
 use super::members::State;
@@ -26,7 +27,7 @@ impl Nearest {
     /// The nearest points of four particles; the first `split` are the first feature.
     #[inline]
     pub fn of(split: usize, places: [Vec3A; 4]) -> Self {
-        let [a, b, c, d] = places.map(Vec3::from);
+        let [a, b, c, d] = places.map_inline(Vec3::from);
         let weights = if split == VERTEX_AND_FACE {
             let [u, v, w] = nearest_to_point([b, c, d], a);
             [1.0, -u, -v, -w]
@@ -51,6 +52,7 @@ impl Nearest {
     }
 
     /// Whether the nearest point is on an edge of the face, or at an end of an edge.
+    #[inline]
     pub fn is_at_border(&self) -> bool {
         let mut weights = self.weights[1..].iter();
         !weights.all(|weight| weight.abs() > 0.0 && weight.abs() < 1.0)
@@ -88,7 +90,7 @@ impl NearPair {
     /// Gap between the two features along the normal (m): while it is positive, a plane separates them.
     #[inline]
     pub fn clearance(&self, states: [&State; 4]) -> f32 {
-        let [a, b, c, d] = states.map(|state| self.normal.dot(state.place));
+        let [a, b, c, d] = states.map_inline(|state| self.normal.dot(state.place));
         if self.split == VERTEX_AND_FACE {
             a - b.max(c).max(d)
         } else {

@@ -24,6 +24,7 @@ pub(crate) struct Participant<'a> {
 
 impl<'a> Participant<'a> {
     /// A cloth that touches only itself.
+    #[inline]
     pub fn alone(
         particles: &'a mut ClothParticles,
         sheet: &'a Arc<Sheet>,

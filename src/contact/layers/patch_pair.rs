@@ -1,5 +1,6 @@
 //! Two near patches: what they have used of their distance, and their listed features.
 
+use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::Vec3A;
@@ -52,6 +53,7 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// Two features that are at least so far apart (m).
+    #[inline]
     pub fn new(particles: [u32; 4], split: usize, thickness: f32, distance: f32) -> Self {
         Self {
             particles,
@@ -64,6 +66,7 @@ impl Candidate {
 }
 
 impl PatchPair {
+    #[inline]
     pub fn new(of: [u32; 2], is_tangled: bool) -> Self {
         Self {
             of,
@@ -79,10 +82,12 @@ impl PatchPair {
         }
     }
 
+    #[inline]
     pub fn has_contacts(&self) -> bool {
         self.contacts > 0
     }
 
+    #[inline]
     pub fn candidates(&self) -> Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
@@ -103,14 +108,16 @@ impl PatchPair {
     }
 
     /// Upper bound of their approach since they were last looked at (m).
+    #[inline]
     pub fn used(&self, motion: &Motion) -> f32 {
-        let [a, b] = self.of.map(|patch| motion.ends[patch as usize]);
+        let [a, b] = self.of.map_inline(|patch| motion.ends[patch as usize]);
         (Vec3A::from_vec4(a - b) - self.between).length() + a.w + b.w - self.since
     }
 
     /// The same, up to the beginning of the sub-step.
+    #[inline]
     pub fn used_at_start(&self, motion: &Motion) -> f32 {
-        let [a, b] = self.of.map(|patch| &motion.patches[patch as usize]);
+        let [a, b] = self.of.map_inline(|patch| &motion.patches[patch as usize]);
         (a.start - b.start - self.between).length() + a.used_at_start() + b.used_at_start()
             - self.since
     }
@@ -128,15 +135,16 @@ pub(super) struct Place {
 
 impl Place {
     /// Takes their places for those that their motion is measured from.
+    #[inline]
     pub fn of(pair: &mut PatchPair, cloths: &[Participant], motion: &Motion, reserve: f32) -> Self {
         let of = pair
             .of
-            .map(|patch| &cloths[motion.patches[patch as usize].cloth as usize]);
+            .map_inline(|patch| &cloths[motion.patches[patch as usize].cloth as usize]);
         let thickness = (of[0].settings.thickness + of[1].settings.thickness) / 2.0;
-        let [a, b] = pair.of.map(|patch| &motion.patches[patch as usize]);
+        let [a, b] = pair.of.map_inline(|patch| &motion.patches[patch as usize]);
         pair.between = a.start - b.start;
         pair.since = a.used_before() + b.used_before();
-        let spacing = of.map(|cloth| cloth.sheet.surface().spacing().shortest);
+        let spacing = of.map_inline(|cloth| cloth.sheet.surface().spacing().shortest);
         Self {
             thickness,
             spacing: spacing[0].min(spacing[1]),
@@ -166,7 +174,7 @@ pub(super) fn measure(
         if !is_far {
             let places = candidate
                 .particles
-                .map(|particle| motion.start[particle as usize]);
+                .map_inline(|particle| motion.start[particle as usize]);
             candidate.nearest = Nearest::of(candidate.split as usize, places);
             candidate.apart = candidate.nearest.distance - candidate.thickness;
         }

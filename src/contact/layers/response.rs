@@ -1,5 +1,6 @@
 //! Keeps layers apart at the end of a sub-step.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{contacts::Contacts, members::Members, pair::NearPair};
@@ -71,7 +72,7 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
         a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3]
     };
     let states = members.states(pair.members);
-    let between = combined(states.map(|state| state.place));
+    let between = combined(states.map_inline(|state| state.place));
     let gap = normal.dot(between);
     if gap >= floor || normal == Vec3A::ZERO {
         return None;
@@ -100,9 +101,9 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
     }
     let depth = pair.thickness - gap;
     // The approaching part of the displacement and of the velocity.
-    let motion = combined(states.map(|state| state.moved));
+    let motion = combined(states.map_inline(|state| state.moved));
     let nearing = -normal.dot(motion);
-    let start = combined(states.map(|state| state.start));
+    let start = combined(states.map_inline(|state| state.start));
     let came = (depth - RESTING * pair.thickness)
         .min(normal.dot(start) - gap)
         .max(0.0);

@@ -1,5 +1,6 @@
 //! The search structure of a surface, for contact with itself and with others.
 
+use crate::cloth::MapInline;
 use std::{ops::Range, sync::Arc};
 
 use bevy::{math::Vec3A, platform::collections::HashSet};
@@ -54,6 +55,7 @@ pub(super) struct Node {
 }
 
 impl Node {
+    #[inline]
     pub fn children(&self) -> &[u32] {
         &self.children[..self.child_count as usize]
     }
@@ -180,7 +182,7 @@ impl Sheet {
         }
         for &particle in owned {
             for &face in self.surface.faces().of(particle) {
-                let face = face.map(|corner| {
+                let face = face.map_inline(|corner| {
                     let known = &self.particles[from[0]..];
                     let place = known.iter().position(|&known| known == corner);
                     place.unwrap_or_else(|| {
@@ -191,7 +193,8 @@ impl Sheet {
                 self.faces.push(face);
                 let [a, b, c] = face;
                 for edge in [[a, b], [b, c], [c, a]] {
-                    let [from, to] = edge.map(|end| self.particles[from[0] + usize::from(end)]);
+                    let [from, to] =
+                        edge.map_inline(|end| self.particles[from[0] + usize::from(end)]);
                     if seen.insert([from.min(to), from.max(to)]) {
                         self.edges.push(edge);
                     }
@@ -225,17 +228,20 @@ impl Sheet {
     }
 
     /// The surface.
+    #[inline]
     pub fn surface(&self) -> &Arc<Surface> {
         &self.surface
     }
 
     /// For a grid, the smallest distance at rest between two features without a common particle (m): from a corner of a
     /// cell to its diagonal. 0 for a mesh.
+    #[inline]
     pub(super) fn closest(&self) -> f32 {
         self.closest
     }
 
     /// The nodes of the tree over its patches, each before its children.
+    #[inline]
     pub(super) fn nodes(&self) -> &[Node] {
         &self.nodes
     }
@@ -245,12 +251,14 @@ impl Sheet {
     }
 
     /// The windows of a grid; none for a mesh.
+    #[inline]
     pub(super) fn windows(&self) -> &Windows {
         &self.windows
     }
 
     /// A lower bound of the distance between any two features without a common particle in a window (m), from its tangents at
     /// these positions.
+    #[inline]
     pub(super) fn unfolded(&self, window: usize, places: &[Vec3A]) -> f32 {
         let grid = self.surface.as_grid();
         let Some(grid) = grid.filter(|grid| grid.rope_radius().is_none()) else {
@@ -263,27 +271,32 @@ impl Sheet {
     }
 
     /// The particles of a patch's features.
+    #[inline]
     pub(super) fn particles_of(&self, patch: u32) -> &[u32] {
         let Range { start, end } = self.patches[patch as usize].particles;
         &self.particles[start as usize..end as usize]
     }
 
     /// The patches with features of a particle.
+    #[inline]
     pub(super) fn patches_of(&self, particle: usize) -> &[u32] {
         self.patches_with.of(particle as u32)
     }
 
     /// The place of a patch's first particle among those of all patches.
+    #[inline]
     pub(super) fn first_of(&self, patch: u32) -> u32 {
         self.patches[patch as usize].particles.start
     }
 
     /// The number of a patch's particles that it owns: the first ones.
+    #[inline]
     pub(super) fn owned_of(&self, patch: u32) -> u16 {
         self.patches[patch as usize].owned as u16
     }
 
     /// The places of a patch's groups of eight among those of all patches.
+    #[inline]
     pub(super) fn group_range(&self, patch: u32) -> Range<u32> {
         let next = self.patches.get(patch as usize + 1);
         self.patches[patch as usize].first_group
@@ -296,18 +309,21 @@ impl Sheet {
     }
 
     /// The groups of eight of a patch: the corners of eight features each, by their places among its particles.
+    #[inline]
     pub(super) fn groups_of(&self, patch: u32) -> &[[u16; 8]] {
         let Range { start, end } = self.group_range(patch);
         &self.groups[start as usize..end as usize]
     }
 
     /// The faces of a patch, by the places of their corners among its particles.
+    #[inline]
     pub(super) fn faces_of(&self, patch: u32) -> &[[u16; 3]] {
         let Range { start, end } = self.patches[patch as usize].faces;
         &self.faces[start as usize..end as usize]
     }
 
     /// The edges of a patch, by the places of their ends among its particles.
+    #[inline]
     pub(super) fn edges_of(&self, patch: u32) -> &[[u16; 2]] {
         let Range { start, end } = self.patches[patch as usize].edges;
         &self.edges[start as usize..end as usize]

@@ -27,6 +27,7 @@ pub(super) struct Tangents {
 
 impl Tangents {
     /// The tangents of a rectangle of particles, from its rows, at these distances at rest.
+    #[inline]
     pub fn of<'a>(rows: impl Iterator<Item = &'a [Vec3A]>, spacing: Vec2) -> Self {
         let (mut across, mut down) = (Bounds::EMPTY, Bounds::EMPTY);
         let mut above: &[Vec3A] = &[];
@@ -51,6 +52,7 @@ impl Tangents {
     }
 
     /// σ − ε: a lower bound of the ratio of any two points' distance to that at rest; 0 or less where they may meet.
+    #[inline]
     pub fn unfolded(&self) -> f32 {
         let middle = |of: &Bounds| (of.min + of.max) * 0.5;
         let spread = |of: &Bounds| ((of.max - of.min) * 0.5).length_squared();

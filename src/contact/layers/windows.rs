@@ -1,5 +1,6 @@
 //! The patches of a grid, row by row, and the windows of 2 × 2 patches over them.
 
+use crate::cloth::MapInline;
 use std::ops::Range;
 
 /// Number of rows and of columns of particles that a patch of a grid owns.
@@ -19,7 +20,7 @@ pub(super) struct Windows {
 impl Windows {
     /// The windows of a grid with these columns and rows, without patches.
     pub fn new(particles: [u32; 2]) -> Self {
-        let size = particles.map(|of| of.div_ceil(OWNED));
+        let size = particles.map_inline(|of| of.div_ceil(OWNED));
         Self {
             particles,
             size,
@@ -47,7 +48,8 @@ impl Windows {
 
     /// Number of rows and columns of windows. A single row of patches is in one row of windows.
     fn counts(&self) -> [u32; 2] {
-        self.size.map(|of| of.saturating_sub(1).max(1).min(of))
+        self.size
+            .map_inline(|of| of.saturating_sub(1).max(1).min(of))
     }
 
     /// Number of windows.
@@ -60,7 +62,7 @@ impl Windows {
     fn range_of(&self, window: usize) -> [Range<u32>; 2] {
         let columns = self.counts()[1];
         let at = [window as u32 / columns, window as u32 % columns];
-        [0, 1].map(|axis| at[axis]..(at[axis] + 2).min(self.size[axis]))
+        [0, 1].map_inline(|axis| at[axis]..(at[axis] + 2).min(self.size[axis]))
     }
 
     /// The patches in a window, row by row.
@@ -71,20 +73,22 @@ impl Windows {
     }
 
     /// The rows and columns of particles of all features in a window.
+    #[inline]
     pub fn particles_in(&self, window: usize) -> [Range<usize>; 2] {
         let of = self.range_of(window);
-        [0, 1].map(|axis| {
+        [0, 1].map_inline(|axis| {
             let last = (OWNED * of[axis].end).min(self.particles[axis] - 1);
             (OWNED * of[axis].start) as usize..last as usize + 1
         })
     }
 
     /// The windows in which two patches are.
+    #[inline]
     pub fn with(&self, of: [u32; 2]) -> impl Iterator<Item = usize> {
         let place = |patch: u32| self.places.get(patch as usize).copied();
-        let [a, b] = of.map(|patch| place(patch).unwrap_or_default());
+        let [a, b] = of.map_inline(|patch| place(patch).unwrap_or_default());
         let counts = self.counts();
-        let [rows, columns] = [0, 1].map(|axis| {
+        let [rows, columns] = [0, 1].map_inline(|axis| {
             let first = a[axis].max(b[axis]).saturating_sub(1);
             first..(a[axis].min(b[axis]) + 1).min(counts[axis])
         });
@@ -93,13 +97,15 @@ impl Windows {
     }
 
     /// Whether some window has both patches.
+    #[inline]
     pub fn are_neighbours(&self, of: [u32; 2]) -> bool {
         self.with(of).next().is_some()
     }
 
     /// Which neighbour the second patch is of the first, which is before it or the same: 1 to 5.
+    #[inline]
     pub fn neighbour(&self, of: [u32; 2]) -> u32 {
-        let [a, b] = of.map(|patch| self.places[patch as usize]);
+        let [a, b] = of.map_inline(|patch| self.places[patch as usize]);
         3 * (b[0] - a[0]) + b[1] + 1 - a[1]
     }
 }

@@ -1,5 +1,6 @@
 //! Penetration depth over all particles, in f64.
 
+use crate::cloth::MapInline;
 use bevy::math::{DQuat, DVec3, Isometry3d, Vec3};
 
 use crate::{cloth::ClothParticles, contact::colliders::ColliderShape};
@@ -40,6 +41,6 @@ pub fn deepest_penetration(
 }
 
 fn seen_from(pose: Isometry3d, point: Vec3) -> DVec3 {
-    let rotation = DQuat::from_array(pose.rotation.to_array().map(f64::from)).normalize();
+    let rotation = DQuat::from_array(pose.rotation.to_array().map_inline(f64::from)).normalize();
     rotation.inverse() * (point.as_dvec3() - Vec3::from(pose.translation).as_dvec3())
 }

@@ -1,5 +1,6 @@
 //! The narrow phase by particles: each is a ball with its own radius.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
 
 use super::{
@@ -44,7 +45,8 @@ impl ContactResult {
     pub fn add(&mut self, sums: &Sums) {
         let largest = |lanes: &Lanes| lanes.iter().copied().fold(0.0, f32::max);
         let sum = |lanes: &Lanes| lanes.iter().copied().map(f64::from).sum::<f64>();
-        let vector = |lanes: &[Lanes; 3]| DVec3::from([0, 1, 2].map(|axis| sum(&lanes[axis])));
+        let vector =
+            |lanes: &[Lanes; 3]| DVec3::from([0, 1, 2].map_inline(|axis| sum(&lanes[axis])));
         self.deepest = self.deepest.max(largest(&sums.deepest));
         let farthest = largest(&sums.farthest_push).sqrt();
         self.farthest_push = self.farthest_push.max(farthest);

@@ -3,6 +3,7 @@
 //! A particle's distance is a statement about positions: having moved by less since, it cannot touch, however much time
 //! has passed. From a surface that deforms, it is one about the rest of the tick. One that touched is tested against the same plane while it hardly moves, in that tick.
 
+use crate::cloth::MapInline;
 use bevy::math::{Mat3, Vec3};
 use multiversion::multiversion;
 
@@ -70,7 +71,7 @@ impl Planes {
 
     /// Finds the plane nearest to a particle.
     fn find(&mut self, lane: usize, shape: &ColliderShape, local: Vec3, frame: &Frame) {
-        let known = Vec3::from([0, 1, 2].map(|axis| self.at[axis][lane]));
+        let known = Vec3::from([0, 1, 2].map_inline(|axis| self.at[axis][lane]));
         let within = self.distance[lane].abs() + local.distance(known);
         let within = within * (1.0 + 1.0e-3) + 1.0e-3;
         let (nearest, surface) = match shape {
@@ -142,7 +143,7 @@ struct Moved {
 fn moved<const DEFORMS: bool>(view: &View, planes: &Planes, frame: &Frame, l: usize) -> Moved {
     let [cx, cy, cz] = frame.centre;
     let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
-    let at = frame.axes.map(|[u, v, w]| x * u + y * v + z * w);
+    let at = frame.axes.map_inline(|[u, v, w]| x * u + y * v + z * w);
     let mut known = [planes.at[0][l], planes.at[1][l], planes.at[2][l]];
     let mut is_recent = true;
     if DEFORMS {

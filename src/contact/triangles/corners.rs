@@ -1,5 +1,6 @@
 //! Tests of a cloth triangle against a collider, at the end of a sub-step and on the way there.
 
+use crate::cloth::MapInline;
 use bevy::math::{Isometry3d, Vec3};
 
 use crate::{
@@ -21,17 +22,19 @@ pub(crate) struct Corners {
 }
 
 impl Corners {
+    #[inline]
     pub fn of(particles: &ClothParticles, slots: [Slot; 3]) -> Self {
         let block = |slot: Slot| &particles.blocks()[slot.block];
         Self {
             slots,
-            positions: slots.map(|slot| block(slot).position(slot.lane)),
-            displacements: slots.map(|slot| block(slot).displacement(slot.lane)),
-            inverse_masses: slots.map(|slot| block(slot).inverse_mass(slot.lane)),
+            positions: slots.map_inline(|slot| block(slot).position(slot.lane)),
+            displacements: slots.map_inline(|slot| block(slot).displacement(slot.lane)),
+            inverse_masses: slots.map_inline(|slot| block(slot).inverse_mass(slot.lane)),
         }
     }
 
     /// Moves a corner, and adds a displacement to its motion (m). Returns its new position.
+    #[inline]
     pub fn push(
         &self,
         corner: usize,
@@ -47,8 +50,10 @@ impl Corners {
     }
 
     /// Positions at a fraction of the sub-step.
+    #[inline]
     fn when(&self, part: f32) -> [Vec3; 3] {
-        [0, 1, 2].map(|corner| self.positions[corner] - self.displacements[corner] * (1.0 - part))
+        [0, 1, 2]
+            .map_inline(|corner| self.positions[corner] - self.displacements[corner] * (1.0 - part))
     }
 }
 
@@ -171,6 +176,7 @@ fn segment(collider: &MovingCollider, pose: Isometry3d) -> [Vec3; 2] {
 }
 
 /// Normal of a triangle that contains the core's point, away from the core's middle.
+#[inline]
 fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
     let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
     if normal.dot(a - middle) < 0.0 {
@@ -201,7 +207,7 @@ pub fn meets_triangles(
     faces.any(|face| {
         let corners = Corners::of(
             particles,
-            face.map(|corner| layout.slot_of(corner as usize)),
+            face.map_inline(|corner| layout.slot_of(corner as usize)),
         );
         nearest(corners.positions, segment).offset.length_squared() < reach * reach
     })

@@ -1,5 +1,6 @@
 //! Friction of triangles, at their particles: the contacts' [push](FrictionBudget) times μ is the budget of each.
 
+use crate::cloth::MapInline;
 use multiversion::multiversion;
 
 use crate::{
@@ -43,7 +44,7 @@ fn hold(
         let (px, py, pz) = (held.push[0][l], held.push[1][l], held.push[2][l]);
         let pushed = (px * px + py * py + pz * pz).sqrt();
         let is_new = pushed > 0.0;
-        let [nx, ny, nz] = [0, 1, 2].map(|axis| {
+        let [nx, ny, nz] = [0, 1, 2].map_inline(|axis| {
             let new = held.push[axis][l] / pushed;
             if is_new { new } else { held.normal[axis][l] }
         });

@@ -3,6 +3,7 @@
 //! A block of a grid is eight cells that lie a strip apart and share no corners. So the same triangle of each can be
 //! pushed at once, and the result equals that of one push after the other.
 
+use crate::cloth::MapInline;
 use multiversion::multiversion;
 
 use super::lanes::{Cells, add_area, areas, move_corner, nearest_of_each, pushes, speeds};
@@ -86,7 +87,7 @@ fn push_eight(
     (motion, cells): (&LaneMotion, &Cells),
     sums: &mut Sums,
 ) -> ([bool; LANES], f32) {
-    let [a, b, c] = corners.map(|corner| corner.view(blocks));
+    let [a, b, c] = corners.map_inline(|corner| corner.view(blocks));
     let near = nearest_of_each(a, b, c, cells.centre);
     let half = cells.reach / 2.0;
     let mut speed = [0.0; LANES];
@@ -165,7 +166,7 @@ fn corners_of(layout: Layout, contact: &ContactBlock, index: usize) -> [[Corner;
     } else {
         block + 1
     };
-    let [right, below, below_right] = contact.around.map(|contact| contact as usize);
+    let [right, below, below_right] = contact.around.map_inline(|contact| contact as usize);
     let corner = |block, contact, is_shifted| Corner {
         block,
         contact,
@@ -185,7 +186,7 @@ pub(crate) fn slots_of(
     which: u32,
     lane: usize,
 ) -> [Slot; 3] {
-    corners_of(layout, contact, 0)[which as usize].map(|corner| Slot {
+    corners_of(layout, contact, 0)[which as usize].map_inline(|corner| Slot {
         block: corner.block,
         lane: lane + usize::from(corner.is_shifted),
     })

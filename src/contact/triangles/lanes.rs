@@ -1,5 +1,6 @@
 //! Tests eight triangles against a ball, in plain loops that the compiler vectorises.
 
+use crate::cloth::MapInline;
 use std::f32::consts::PI;
 
 use bevy::math::Vec3;
@@ -67,7 +68,7 @@ impl Nearest {
 /// From one corner to another, in a lane (m).
 #[inline(always)]
 fn between(a: &View, b: &View, l: usize) -> [f32; 3] {
-    [X, Y, Z].map(|axis| b[axis + l] - a[axis + l])
+    [X, Y, Z].map_inline(|axis| b[axis + l] - a[axis + l])
 }
 
 /// The nearest points of eight triangles, by their Voronoi regions (Ericson 2005, chapter 5).
@@ -159,7 +160,7 @@ pub(crate) fn speeds(corners: [&View; 3], [sx, sy, sz]: [f32; 3]) -> Lanes {
             };
         }
     }
-    fastest.map(f32::sqrt)
+    fastest.map_inline(f32::sqrt)
 }
 
 /// The pushes of eight triangles.
@@ -343,7 +344,8 @@ pub(crate) fn areas(
 #[cold]
 #[inline(never)]
 pub(crate) fn add_area(corners: [&View; 3], lane: usize, cells: &Cells, sums: &mut Sums) {
-    let corners = corners.map(|view| Vec3::new(view[X + lane], view[Y + lane], view[Z + lane]));
+    let corners =
+        corners.map_inline(|view| Vec3::new(view[X + lane], view[Y + lane], view[Z + lane]));
     let (area, volume) = cap(corners, cells.centre.into(), cells.reach);
     sums.area[lane] += area;
     sums.volume[lane] += volume;

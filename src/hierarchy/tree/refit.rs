@@ -4,6 +4,7 @@
 //! four blocks unites the particles of eight nodes. Uniting four of the results gives eight parents, until a node is as
 //! wide as a strip.
 
+use crate::cloth::MapInline;
 use multiversion::multiversion;
 
 use super::halving::{GridTree, Level, Part};
@@ -120,8 +121,8 @@ impl<V: Volume> RefitLevels<V> {
                 }
             };
             let (left, right) = (part.children.start, part.children.end - 1);
-            let [a, b] = [left, right].map(|column| child(upper, column));
-            let [c, d] = [left, right].map(|column| child(lower, column));
+            let [a, b] = [left, right].map_inline(|column| child(upper, column));
+            let [c, d] = [left, right].map_inline(|column| child(lower, column));
             V::set_lane(
                 &mut out[part.in_strip as usize].0,
                 part.lane as usize,
@@ -138,8 +139,8 @@ impl<V: Volume> RefitLevels<V> {
                 let child = |row: u32, column: u32| self.volume(below, level + 1, row, column);
                 let (upper, lower) = (rows.children.start, rows.children.end - 1);
                 let (left, right) = (columns.children.start, columns.children.end - 1);
-                let [a, b] = [left, right].map(|column| child(upper, column));
-                let [c, d] = [left, right].map(|column| child(lower, column));
+                let [a, b] = [left, right].map_inline(|column| child(upper, column));
+                let [c, d] = [left, right].map_inline(|column| child(lower, column));
                 self.nodes[place] = V::unite([&a, &b, &c, &d]);
                 place += 1;
             }
@@ -158,7 +159,7 @@ fn unite_blocks<V: Volume>(
     for (out, part) in out.iter_mut().zip(parts) {
         let (left, right) = (part.children.start as usize, part.children.end as usize - 1);
         let four = [&upper[left], &upper[right], &lower[left], &lower[right]];
-        V::of_particles(four.map(Block::view), &mut out.0);
+        V::of_particles(four.map_inline(Block::view), &mut out.0);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Axis-aligned boxes in the cloth's frame.
 
+use crate::cloth::MapInline;
 use bevy::math::{
     DVec3, Vec3, Vec3A,
     bounding::{Aabb3d, BoundingVolume},
@@ -82,7 +83,7 @@ impl Volume for Aabb3d {
     #[inline(always)]
     fn of_particles(children: [&View; 4], [low, high]: &mut Self::Lanes) {
         for (axis, from) in [X, Y, Z].into_iter().enumerate() {
-            let [a, b, c, d] = children.map(|child| coordinates(child, from));
+            let [a, b, c, d] = children.map_inline(|child| coordinates(child, from));
             for l in 0..LANES {
                 low[axis][l] = least(least(a[l], b[l]), least(c[l], d[l]));
                 high[axis][l] = most(most(a[l], b[l]), most(c[l], d[l]));
@@ -94,7 +95,7 @@ impl Volume for Aabb3d {
     fn unite_lanes(children: [&Self::Lanes; 4], [low, high]: &mut Self::Lanes) {
         for axis in 0..3 {
             unite_slab(
-                children.map(|child| (&child[0][axis], &child[1][axis])),
+                children.map_inline(|child| (&child[0][axis], &child[1][axis])),
                 &mut low[axis],
                 &mut high[axis],
             );

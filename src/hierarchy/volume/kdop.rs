@@ -1,5 +1,6 @@
 //! k-DOPs (Klosowski et al. 1998): polytopes between pairs of parallel planes with fixed directions.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
@@ -211,7 +212,7 @@ impl<const N: usize> Volume for KDop<N> {
     fn unite_lanes(children: [&Self::Lanes; 4], [low, high]: &mut Self::Lanes) {
         for (at, (low, high)) in low.iter_mut().zip(high).enumerate() {
             unite_slab(
-                children.map(|child| (&child[0][at], &child[1][at])),
+                children.map_inline(|child| (&child[0][at], &child[1][at])),
                 low,
                 high,
             );

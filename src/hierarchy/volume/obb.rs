@@ -1,5 +1,6 @@
 //! Oriented boxes.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Mat3, Vec3};
 
 use super::{
@@ -104,7 +105,7 @@ impl Volume for Obb {
     }
 
     fn unite(children: [&Self; 4]) -> Self {
-        let axes = axes_of(children.map(|child| child.centre)).unwrap_or(children[0].axes);
+        let axes = axes_of(children.map_inline(|child| child.centre)).unwrap_or(children[0].axes);
         // Relative to the first child, so that positions far from the origin lose no precision.
         let origin = children[0].centre;
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
@@ -190,14 +191,15 @@ impl Volume for Obb {
 
     fn of_particles(children: [&View; 4], into: &mut Self::Lanes) {
         for (lane, obb) in into.iter_mut().enumerate() {
-            let [a, b, c, d] = children.map(|child| Self::around(Self::position(child, lane), 0.0));
+            let [a, b, c, d] =
+                children.map_inline(|child| Self::around(Self::position(child, lane), 0.0));
             *obb = Self::unite([&a, &b, &c, &d]);
         }
     }
 
     fn unite_lanes(children: [&Self::Lanes; 4], into: &mut Self::Lanes) {
         for (lane, obb) in into.iter_mut().enumerate() {
-            *obb = Self::unite(children.map(|child| &child[lane]));
+            *obb = Self::unite(children.map_inline(|child| &child[lane]));
         }
     }
 

@@ -1,5 +1,6 @@
 //! Bounding spheres.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::BoundingSphere, primitives::Sphere};
 
 use super::{
@@ -60,8 +61,8 @@ impl Volume for BoundingSphere {
     fn of_particles(children: [&View; 4], into: &mut Self::Lanes) {
         let [a, b, c, d] = children;
         for l in 0..LANES {
-            let [x, y, z] =
-                [X, Y, Z].map(|at| ((a[at + l] + b[at + l]) + (c[at + l] + d[at + l])) / 4.0);
+            let [x, y, z] = [X, Y, Z]
+                .map_inline(|at| ((a[at + l] + b[at + l]) + (c[at + l] + d[at + l])) / 4.0);
             let square = |child: &View| {
                 let (x, y, z) = (child[X + l] - x, child[Y + l] - y, child[Z + l] - z);
                 x * x + y * y + z * z
@@ -77,7 +78,7 @@ impl Volume for BoundingSphere {
         let [a, b, c, d] = children;
         for l in 0..LANES {
             let [x, y, z] =
-                [0, 1, 2].map(|at| ((a[at][l] + b[at][l]) + (c[at][l] + d[at][l])) / 4.0);
+                [0, 1, 2].map_inline(|at| ((a[at][l] + b[at][l]) + (c[at][l] + d[at][l])) / 4.0);
             let reach = |child: &Self::Lanes| {
                 let (x, y, z) = (child[0][l] - x, child[1][l] - y, child[2][l] - z);
                 (x * x + y * y + z * z).sqrt() + child[3][l]
@@ -90,7 +91,7 @@ impl Volume for BoundingSphere {
 
     #[inline(always)]
     fn lane(lanes: &Self::Lanes, lane: usize) -> Self {
-        let [x, y, z, radius] = [0, 1, 2, 3].map(|at| lanes[at][lane]);
+        let [x, y, z, radius] = [0, 1, 2, 3].map_inline(|at| lanes[at][lane]);
         Self {
             center: Vec3A::new(x, y, z),
             sphere: Sphere { radius },

@@ -31,6 +31,7 @@
 //! **Cost** (64², 20 sub-steps, one thread): 4 % of a tick in a uniform wind, 6 % in any other (`cargo bench --profile
 //! dev --bench solver -- air`).
 
+use crate::cloth::MapInline;
 mod gas;
 mod pressure;
 #[cfg(test)]
@@ -230,7 +231,8 @@ impl Airflow {
         for (row, (linearized, places)) in rows.zip(known) {
             let mut sum = [[0.0; LANES]; 3];
             (kernels.air_impulse)(row, linearized, places, seconds, &mut sum);
-            self.impulse += DVec3::from(sum.map(|lanes| lanes.into_iter().map(f64::from).sum()));
+            self.impulse +=
+                DVec3::from(sum.map_inline(|lanes| lanes.into_iter().map(f64::from).sum()));
         }
         self.memory.force = (self.impulse - before).as_vec3() / seconds;
         self.since = 0;
@@ -270,7 +272,7 @@ impl Airflow {
             ..
         } = self;
         if !*is_local {
-            winds.fill(wind.to_array().map(|of| [of; LANES]));
+            winds.fill(wind.to_array().map_inline(|of| [of; LANES]));
         }
         if let Some(triangles) = triangles {
             let enclosed = triangles.areas(blocks, areas);

@@ -1,5 +1,6 @@
 //! A wind that depends on the position, known at some positions and interpolated between them.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use crate::{
@@ -114,7 +115,7 @@ impl Lattice {
         let high = particles.positions().fold(Vec3::MIN, Vec3::max);
         let size = high - low;
         let cell = size.max_element() / ALONG_SIDE as f32;
-        let cells = size.to_array().map(|side| {
+        let cells = size.to_array().map_inline(|side| {
             let cells = (side / cell).ceil();
             // A cloth without a size is one cell.
             if cells >= 1.0 {
@@ -147,7 +148,7 @@ impl Lattice {
         let cell = Vec3::from(
             per_metre
                 .to_array()
-                .map(|of| if of > 0.0 { 1.0 / of } else { 0.0 }),
+                .map_inline(|of| if of > 0.0 { 1.0 / of } else { 0.0 }),
         );
         (0..=x).flat_map(move |x| {
             (0..=y).flat_map(move |y| {

@@ -12,6 +12,7 @@ use super::{
     grid_creases::Solve,
     plate::Plate,
 };
+use crate::cloth::MapInline;
 use crate::{
     cloth::{Block, LANES, Lanes, Layout, W},
     solver::kernels::{Factor, Kernels, Vec3Lanes},
@@ -162,7 +163,7 @@ impl ChainBending {
         factors.weight = weight;
         for (at, family) in self.families.iter().enumerate() {
             for (scaled, stiffness) in factors.stiffness[at].iter_mut().zip(&family.stiffness) {
-                *scaled = stiffness.map(|stiffness| stiffness * weight);
+                *scaled = stiffness.map_inline(|stiffness| stiffness * weight);
             }
             self.factor(family, &factors.stiffness[at], &mut factors.factors[at]);
         }
@@ -320,7 +321,7 @@ impl ChainBending {
             let Some(row) = next.checked_sub(1) else {
                 continue;
             };
-            let moments = [row + 2, row, row + 1].map(|row| &*self.moments[row % 3]);
+            let moments = [row + 2, row, row + 1].map_inline(|row| &*self.moments[row % 3]);
             let (solved, rest) = self.solved.split_at_mut(row * strip);
             let solved = |back: usize| match row.checked_sub(back) {
                 Some(row) => &solved[of(row)],
@@ -331,7 +332,7 @@ impl ChainBending {
         }
         for row in (0..rows).rev() {
             let (own, rest) = self.solved[row * strip..].split_at_mut(strip);
-            let solved = [0, 1].map(|on| rest.get(of(on)).unwrap_or(&self.none.0));
+            let solved = [0, 1].map_inline(|on| rest.get(of(on)).unwrap_or(&self.none.0));
             (kernels.chain_backward)(
                 &mut blocks[of(row)],
                 factors_of(row),

@@ -7,6 +7,7 @@
 //! Only stencils with a crease are looked at in a sub-step. Each family of stencils is pushed before it is solved: one at its rest
 //! curvature stays there, however stiff the others are.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::{creasing::ClothCreasing, plate::Plate};
@@ -333,7 +334,7 @@ impl Frame {
     fn levers(&self, difference: Vec3, moment: f32) -> [f32; 2] {
         let most = moment.abs();
         self.turns
-            .map(|turn| (moment * difference.dot(turn)).clamp(-most, most))
+            .map_inline(|turn| (moment * difference.dot(turn)).clamp(-most, most))
     }
 }
 

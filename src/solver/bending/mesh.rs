@@ -20,6 +20,7 @@
 //! `(M + s K) e = −s K p` is solved by conjugate gradients. Cloth that is soft for its spacing and sub-steps is pushed by `−s K p`
 //! instead, like a grid.
 
+use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::{Vec3A, Vec4};
@@ -225,14 +226,14 @@ impl MeshBending {
         }
         for face in &self.matrix.rest {
             let [a, b, c, ..] = face.particles;
-            let corners = [a, b, c].map(|at| {
+            let corners = [a, b, c].map_inline(|at| {
                 let [place, moved] = self.places[at as usize];
                 Vec3A::from_vec4(place + moved)
             });
             let Some(frame) = frame(corners) else {
                 continue;
             };
-            let [x, y, z] = frame.map(|axis| axis.extend(0.0));
+            let [x, y, z] = frame.map_inline(|axis| axis.extend(0.0));
             for (&particle, &[along, beside, out]) in face.particles.iter().zip(&face.forces) {
                 self.rows[particle as usize].left += x * along + y * beside + z * out;
             }

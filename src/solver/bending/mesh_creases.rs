@@ -4,6 +4,7 @@
 //! the bending of the mesh. The rest is a force, the gradient of `A D κ·κ₀`. It includes how the frame turns, so that no face
 //! has a resultant or a moment.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{
@@ -14,8 +15,8 @@ use crate::cloth::{Block, Layout, StiffnessFactors, Surface, Woven};
 
 /// The frame of a patch with its particles at these places.
 fn axes_of(at: &[Vec3; 6]) -> Option<[Vec3; 3]> {
-    let corners = [at[0], at[1], at[2]].map(Vec3A::from);
-    Some(frame(corners)?.map(Vec3::from))
+    let corners = [at[0], at[1], at[2]].map_inline(Vec3A::from);
+    Some(frame(corners)?.map_inline(Vec3::from))
 }
 
 /// Curvatures along a face's first edge, beside it and of twist (1/m), in its frame.
@@ -46,19 +47,21 @@ impl Face {
         let place = |particle: u32| (places[particle as usize] - origin).as_vec3();
         let mut new = Self {
             particles: patch.particles,
-            curvature: patch.curvature.map(|of| of.map(|number| number as f32)),
+            curvature: patch
+                .curvature
+                .map_inline(|of| of.map_inline(|number| number as f32)),
             stiffness: std::array::from_fn(|row| std::array::from_fn(|column| number(row, column))),
             natural: [Vec3::ZERO; 3],
             most: 4.0 / (2.0 * patch.area as f32).sqrt(),
         };
-        let at = new.particles.map(place);
+        let at = new.particles.map_inline(place);
         new.natural = new.bent(&at, &axes_of(&at)?);
         Some(new)
     }
 
     /// Its curvatures in its frame.
     fn bent(&self, at: &[Vec3; 6], [x, y, z]: &[Vec3; 3]) -> [Vec3; 3] {
-        self.curvature.map(|of| {
+        self.curvature.map_inline(|of| {
             let numbers = of.iter().zip(at);
             let bent: Vec3 = numbers
                 .map(|(number, place)| *number * (*place - at[0]))
@@ -70,8 +73,8 @@ impl Face {
     /// The forces of a crease on each particle (N).
     fn forces(&self, at: &[Vec3; 6], crease: &Curvature) -> Option<[Vec3; 6]> {
         let axes = axes_of(at)?;
-        let crease = crease.map(Vec3::from);
-        let moments = self.stiffness.map(|of| -> Vec3 {
+        let crease = crease.map_inline(Vec3::from);
+        let moments = self.stiffness.map_inline(|of| -> Vec3 {
             of.iter()
                 .zip(crease)
                 .map(|(number, crease)| *number * crease)
@@ -92,7 +95,7 @@ impl Face {
         forces[1] += Vec3::new(0.0, -swing, lift * foot + tip);
         forces[2].z -= lift;
         let [x, y, z] = axes;
-        let forces = forces.map(|force| force.x * x + force.y * y + force.z * z);
+        let forces = forces.map_inline(|force| force.x * x + force.y * y + force.z * z);
         forces
             .iter()
             .all(|force| force.is_finite())
@@ -190,7 +193,7 @@ impl MeshCreases {
             let Some(face) = face else {
                 continue;
             };
-            let Some(forces) = face.forces(&face.particles.map(&place), rest) else {
+            let Some(forces) = face.forces(&face.particles.map_inline(&place), rest) else {
                 continue;
             };
             for (particle, force) in face.particles.into_iter().zip(forces) {
@@ -209,7 +212,7 @@ impl MeshCreases {
         for (face, rest) in faces.filter_map(|(face, rest)| Some((face.as_ref()?, rest))) {
             let at = face
                 .particles
-                .map(|particle| self.places[particle as usize]);
+                .map_inline(|particle| self.places[particle as usize]);
             let Some(axes) = axes_of(&at) else {
                 continue;
             };
@@ -238,7 +241,7 @@ impl MeshCreases {
             } else {
                 1.0
             };
-            *rest = flowed.map(|of| (part * of).to_array());
+            *rest = flowed.map_inline(|of| (part * of).to_array());
         }
         if has_flowed {
             self.gather();

@@ -1,5 +1,6 @@
 //! The matrix of a mesh's bending energy.
 
+use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3};
 
 use super::patch::{Patch, RestFace, for_each_row};
@@ -132,7 +133,7 @@ impl MeshMatrix {
             }
             numbers
         };
-        (0..count).map(row).collect()
+        (0..count).map_inline(row).collect()
     }
 
     /// ½ xᵀ K x of one coordinate (J), by differences, as the forces are.
@@ -142,10 +143,10 @@ impl MeshMatrix {
             let between = |&(other, number): &(u32, f32)| {
                 f64::from(number) * (places[other as usize] - places[row]).powi(2)
             };
-            beside.map(between).sum::<f64>()
+            beside.map_inline(between).sum::<f64>()
         };
         // Each pair is seen from both ends.
-        -(0..places.len()).map(of_row).sum::<f64>() / 4.0
+        -(0..places.len()).map_inline(of_row).sum::<f64>() / 4.0
     }
 }
 
@@ -155,13 +156,13 @@ pub(super) fn changed(
     surface: &Surface,
     factors: &StiffnessFactors,
 ) -> Vec<bool> {
-    let [was, is] = [known.surface, surface].map(Surface::bending_faces);
+    let [was, is] = [known.surface, surface].map_inline(Surface::bending_faces);
     if was.faces().len() != is.faces().len() {
         return vec![true; surface.len()];
     }
     let mut is_changed = vec![false; surface.len()];
     for index in 0..is.faces().len() {
-        let [before, after] = [was, is].map(|of| (of.faces()[index], of.beside(index)));
+        let [before, after] = [was, is].map_inline(|of| (of.faces()[index], of.beside(index)));
         let particles = |(face, beside): ([u32; 3], [Option<u32>; 3])| {
             face.into_iter().chain(beside.into_iter().flatten())
         };

@@ -1,5 +1,6 @@
 //! The curvature of a face, from the faces beside it.
 
+use crate::cloth::MapInline;
 use bevy::math::{DMat3, DVec2, DVec3, Vec3, Vec3A};
 
 use crate::cloth::ByParticle;
@@ -91,7 +92,7 @@ pub(super) struct Patch {
 impl Patch {
     pub fn new(corners: [u32; 3], beside: [Option<u32>; 3], places: &[DVec3]) -> Option<Self> {
         let place = |particle: u32| places[particle as usize];
-        let [a, b, c] = corners.map(place);
+        let [a, b, c] = corners.map_inline(place);
         let (x, normal) = ((b - a).normalize(), (b - a).cross(c - a));
         let area = normal.length() / 2.0;
         let y = normal.normalize().cross(x);
@@ -106,7 +107,7 @@ impl Patch {
             let Some(beyond) = beyond else {
                 continue;
             };
-            let [i, j, k] = [0, 1, 2].map(|on| (edge + on) % 3);
+            let [i, j, k] = [0, 1, 2].map_inline(|on| (edge + on) % 3);
             let along = flat[j] - flat[i];
             let length = along.length();
             let out = -DVec2::new(-along.y, along.x) / length;
@@ -155,7 +156,7 @@ impl Patch {
         let Some(warp) = warp else {
             return DMat3::IDENTITY.to_cols_array_2d();
         };
-        let [a, b, c] = [0, 1, 2].map(|corner| places[self.particles[corner] as usize]);
+        let [a, b, c] = [0, 1, 2].map_inline(|corner| places[self.particles[corner] as usize]);
         let x = (b - a).normalize();
         let y = (b - a).cross(c - a).normalize().cross(x);
         // Beside a turned diagonal, it is that of a face in nearly this plane.
@@ -164,8 +165,8 @@ impl Patch {
         let beside = std::f64::consts::SQRT_2 * cos * sin;
         let (cos, sin) = (cos * cos, sin * sin);
         [
-            [cos, sin, beside].map(|number| number / ratio),
-            [sin, cos, -beside].map(|number| number * ratio),
+            [cos, sin, beside].map_inline(|number| number / ratio),
+            [sin, cos, -beside].map_inline(|number| number * ratio),
             [-beside, beside, cos - sin],
         ]
     }
@@ -174,7 +175,7 @@ impl Patch {
     pub fn weave(&mut self, warp: DVec3, ratio: f64, places: &[DVec3]) {
         let woven = self.woven(Some(warp), ratio, places);
         for particle in 0..6 {
-            let own = DVec3::from(self.curvature.map(|of| of[particle]));
+            let own = DVec3::from(self.curvature.map_inline(|of| of[particle]));
             for (of, woven) in self.curvature.iter_mut().zip(woven) {
                 of[particle] = own.dot(woven.into());
             }
@@ -183,8 +184,10 @@ impl Patch {
 
     /// The forces of a face with this index, if it is curved at rest.
     pub fn rest(&self, face: u32, stiffness: f64, places: &[DVec3]) -> Option<RestFace> {
-        let at = self.particles.map(|particle| places[particle as usize]);
-        let bent = self.curvature.map(|of| -> DVec3 {
+        let at = self
+            .particles
+            .map_inline(|particle| places[particle as usize]);
+        let bent = self.curvature.map_inline(|of| -> DVec3 {
             let each = of.iter().zip(&at);
             // From one corner, so that rounding stays below curvatures.
             each.map(|(number, place)| *number * (*place - at[0])).sum()
@@ -193,14 +196,14 @@ impl Patch {
         if largest * self.area.sqrt() < FLAT {
             return None;
         }
-        let corners = [at[0], at[1], at[2]].map(|corner| Vec3A::from(corner.as_vec3()));
-        let [x, y, z] = frame(corners)?.map(Vec3::from);
+        let corners = [at[0], at[1], at[2]].map_inline(|corner| Vec3A::from(corner.as_vec3()));
+        let [x, y, z] = frame(corners)?.map_inline(Vec3::from);
         let forces = std::array::from_fn(|particle| {
             let force: DVec3 = (0..3)
                 .map(|component| stiffness * self.curvature[component][particle] * bent[component])
                 .sum();
             let force = force.as_vec3();
-            [x, y, z].map(|axis| force.dot(axis))
+            [x, y, z].map_inline(|axis| force.dot(axis))
         });
         Some(RestFace {
             face,
@@ -229,7 +232,7 @@ fn smallest_curvature(slopes: &[[f64; 6]; 3], of_curvature: &[DVec3; 3]) -> Opti
     let inverse = DMat3::from_cols_array_2d(&gram).inverse();
     let mut curvature = [[0.0; 6]; 3];
     for particle in 0..6 {
-        let of_edges = inverse * DVec3::from_array(slopes.map(|slope| slope[particle]));
+        let of_edges = inverse * DVec3::from_array(slopes.map_inline(|slope| slope[particle]));
         for (component, of) in curvature.iter_mut().enumerate() {
             of[particle] = (0..3)
                 .map(|edge| of_curvature[edge][component] * of_edges[edge])

@@ -6,6 +6,7 @@
 //! it is stable as long as A is below one.
 
 use super::plate::Plate;
+use crate::cloth::MapInline;
 use crate::{
     cloth::{Block, LANES, Lanes, W},
     solver::kernels::{EDGE, Kernels, Moments, Stiffness, Vec3Lanes},
@@ -35,7 +36,7 @@ impl Push {
     pub fn new(plate: &Plate) -> Self {
         let layout = plate.layout;
         let (rows, strip) = (layout.rows as usize, layout.strip as usize);
-        let stiffness = [0, 1].map(|row| {
+        let stiffness = [0, 1].map_inline(|row| {
             let of = |number: &dyn Fn(u32) -> f32| plate.of_columns(number).collect::<Vec<_>>();
             let across = of(&|column| plate.across(row, column));
             let down = of(&|column| plate.down(row, column));
@@ -44,7 +45,7 @@ impl Push {
             all.map(|((across, down), twist)| [across, down, twist])
                 .collect()
         });
-        let bounds = [0, 1, 2].map(|row| {
+        let bounds = [0, 1, 2].map_inline(|row| {
             plate
                 .of_columns(|column| bound(plate, row, column))
                 .collect()
@@ -98,7 +99,7 @@ impl Push {
                 // A row at the end has no moments down the columns, and the last one, which is its own next one, no twist.
                 let above = next.saturating_sub(1);
                 let below = (next + 1).min(rows - 1);
-                let places = [above, next, below].map(|row| &*self.places[row % 3]);
+                let places = [above, next, below].map_inline(|row| &*self.places[row % 3]);
                 let is_inside = next > 0 && next + 1 < rows;
                 let stiffness = &self.stiffness[usize::from(is_inside)];
                 (kernels.plate_moments)(places, stiffness, moments);
@@ -106,7 +107,7 @@ impl Push {
                 moments.fill(Moments::default());
             }
             if let Some(own) = next.checked_sub(1) {
-                let moments = [own + 2, own, own + 1].map(|row| &*self.moments[row % 3]);
+                let moments = [own + 2, own, own + 1].map_inline(|row| &*self.moments[row % 3]);
                 (kernels.plate_push)(moments, weight, &mut blocks[row(own)]);
             }
         }

@@ -1,6 +1,7 @@
 //! The springs of a grid, chain by chain, in one partition or several. A partition consists of blocks side by side for chains
 //! from row to row, and of rows for chains within rows.
 
+use crate::cloth::MapInline;
 use std::ops::Range;
 
 use super::second_pass::{GridSprings, SecondPass};
@@ -57,7 +58,7 @@ impl GridSolver {
         let across = [springs((0, 1), 0), springs((0, 1), 1)];
         let down = springs((1, 0), 0);
         let ripple_stiffness =
-            [&across[1], &down].map(|springs| springs.stiffness() * springs.inverse_rest);
+            [&across[1], &down].map_inline(|springs| springs.stiffness() * springs.inverse_rest);
         let is_elastic = across.iter().chain([&down]).any(SpringBand::is_elastic);
         Self {
             layout,

@@ -6,6 +6,7 @@
 //! measured then, and so on, for a few rounds. It is the iteration of Gauss and Seidel by chains (Saad 2003, section 4.1),
 //! for those equations alone that need it.
 
+use crate::cloth::MapInline;
 use crate::{
     cloth::{Block, LANES, Lanes, Layout},
     solver::{
@@ -99,7 +100,7 @@ impl SecondPass {
             rows: Chains::new(rows),
             columns: Chains::new(strip),
             found: vec![Residuals::new(strip)],
-            pulled: [(); 2].map(|()| vec![[0.0; LANES]; multipliers]),
+            pulled: [(); 2].map_inline(|()| vec![[0.0; LANES]; multipliers]),
             calm: 0,
             is_busy: false,
         }
@@ -166,7 +167,7 @@ impl SecondPass {
         let bands = [inner, down];
         for (given, springs) in given.iter_mut().zip(bands) {
             // At a length l of which the part g/r is given, the pull has given g l/r.
-            *given = given.map(|given| {
+            *given = given.map_inline(|given| {
                 let part = (given * springs.inverse_rest).min(MOST_GIVEN);
                 given / (1.0 - part)
             });

@@ -1,5 +1,6 @@
 //! The cloth between a body and the ground that it stands on.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use crate::{
@@ -36,7 +37,7 @@ impl Near<'_> {
         let mut faces = owners.flat_map(|owner| self.surface.faces().of(owner.particle));
         faces.find_map(|face| {
             let place = |corner: u32| self.particles.position_at(corner as usize) - below;
-            let corners = face.map(place);
+            let corners = face.map_inline(place);
             let weights = weights_along(corners, normal)?;
             let met: Vec3 = (0..3).map(|at| corners[at] * weights[at]).sum();
             let height = met.dot(normal);
@@ -70,7 +71,7 @@ fn weights_along(corners: [Vec3; 3], along: Vec3) -> Option<[f32; 3]> {
     let parts = [volume(b, c), volume(c, a), volume(a, b)];
     let whole: f32 = parts.iter().sum();
     let is_met = whole != 0.0 && parts.iter().all(|part| part / whole >= 0.0);
-    is_met.then(|| parts.map(|part| part / whole))
+    is_met.then(|| parts.map_inline(|part| part / whole))
 }
 
 /// The point of a body's surface nearest to a manifold's. That is right to a tenth of a millimetre only, and what stands

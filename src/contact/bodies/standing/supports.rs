@@ -1,5 +1,6 @@
 //! Where bodies stand.
 
+use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::{Isometry3d, Vec3};
@@ -117,7 +118,7 @@ impl Supports {
         passed: f32,
     ) {
         let poses = [moving.pose_at(passed), below.pose_at(passed)];
-        let [place, ground_place] = poses.map(|pose| Vec3::from(pose.translation));
+        let [place, ground_place] = poses.map_inline(|pose| Vec3::from(pose.translation));
         let extent = moving.shape.extent();
         let far = place.distance(ground_place) + extent;
         let travel = moving.max_surface_travel(extent) + below.max_surface_travel(far);
@@ -269,7 +270,8 @@ struct Place {
 
 impl Place {
     fn of(point: &ManifoldPoint, [moving, ground]: [&MovingCollider; 2], passed: f32) -> Self {
-        let [body_pose, ground_pose] = [moving, ground].map(|collider| collider.pose_at(passed));
+        let [body_pose, ground_pose] =
+            [moving, ground].map_inline(|collider| collider.pose_at(passed));
         let above = onto(moving, body_pose * point.on_second, passed);
         let rough = [
             ground_pose * point.on_first,
@@ -289,7 +291,7 @@ impl Place {
 
     /// The support there, by a piece of cloth. `poses` are those of the body and of the ground.
     fn support(&self, cloth: Cover, poses: [Isometry3d; 2]) -> Support {
-        let [body, ground] = poses.map(|pose| pose.inverse());
+        let [body, ground] = poses.map_inline(|pose| pose.inverse());
         Support {
             on_body: body * self.above,
             on_ground: ground * self.below,

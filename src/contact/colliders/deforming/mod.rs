@@ -1,5 +1,6 @@
 //! Meshes that deform: skinned bodies.
 
+use crate::cloth::MapInline;
 mod skinned;
 mod topology;
 
@@ -161,7 +162,7 @@ impl Deformed {
                 let faces = &triangles[node.faces.start as usize..node.faces.end as usize];
                 let corners = faces.as_flattened().iter();
                 corners.fold(Boxes::EMPTY, |boxes, &corner| {
-                    let [from, to] = [from, to].map(|end| end[corner as usize]);
+                    let [from, to] = [from, to].map_inline(|end| end[corner as usize]);
                     boxes.with(&Boxes {
                         ends: [[from; 2], [to; 2]],
                         moved: [to - from; 2],
@@ -175,7 +176,7 @@ impl Deformed {
     fn corners(&self, face: u32, part: f32) -> [Vec3; 3] {
         let [from, to] = &self.ends;
         let corners = self.topology.triangles[face as usize];
-        corners.map(|corner| from[corner as usize].lerp(to[corner as usize], part))
+        corners.map_inline(|corner| from[corner as usize].lerp(to[corner as usize], part))
     }
 
     fn nearest_face(&self, part: f32, point: Vec3) -> Option<OnFace> {
@@ -203,14 +204,14 @@ impl Deformed {
         let [from, to] = &self.ends;
         let left = part.max(1.0 - part);
         let of_box = |of: &Boxes| {
-            let [low, high] = of.moved.map(|moved| (moved - displacement).abs());
+            let [low, high] = of.moved.map_inline(|moved| (moved - displacement).abs());
             of.distance_squared(part, point).sqrt() - low.max(high).length() * left
         };
         let of_face = |face: u32| {
             let corners = self.corners(face, part);
             let distance = at(corners, nearest_to_point(corners, point)).distance(point);
             let triangle = self.topology.triangles[face as usize];
-            let moved = triangle.map(|corner| {
+            let moved = triangle.map_inline(|corner| {
                 let corner = corner as usize;
                 (to[corner] - from[corner]).distance_squared(displacement)
             });
@@ -250,7 +251,7 @@ impl Deformed {
             return;
         }
         let mut children =
-            [node + 1, of.second as usize].map(|child| (bound(&self.boxes[child]), child));
+            [node + 1, of.second as usize].map_inline(|child| (bound(&self.boxes[child]), child));
         if children[1].0 < children[0].0 {
             children.swap(0, 1);
         }
@@ -265,7 +266,7 @@ impl Deformed {
     fn displacement(&self, of: &OnFace) -> Vec3 {
         let [from, to] = &self.ends;
         let corners = self.topology.triangles[of.face as usize];
-        let moved = corners.map(|corner| to[corner as usize] - from[corner as usize]);
+        let moved = corners.map_inline(|corner| to[corner as usize] - from[corner as usize]);
         at(moved, of.weights)
     }
 
@@ -284,7 +285,7 @@ impl Deformed {
             triangles, beside, ..
         } = &*self.topology;
         let own = self.normal(of.corners).normalize_or_zero();
-        let zeros = of.weights.map(|weight| weight == 0.0);
+        let zeros = of.weights.map_inline(|weight| weight == 0.0);
         let around = |vertex: u32| {
             let faces = self.topology.around.of(vertex);
             let mut sum = Vec3::ZERO;
@@ -297,7 +298,7 @@ impl Deformed {
                 {
                     return None;
                 }
-                let [a, b, c] = [0, 1, 2].map(|next| corners[(at + next) % 3]);
+                let [a, b, c] = [0, 1, 2].map_inline(|next| corners[(at + next) % 3]);
                 // A face without an area has no angles.
                 let angle = (b - a).angle_between(c - a);
                 if angle.is_finite() {
@@ -340,7 +341,7 @@ impl Boxes {
 
     fn with(&self, other: &Self) -> Self {
         Self {
-            ends: [0, 1].map(|end| union(self.ends[end], other.ends[end])),
+            ends: [0, 1].map_inline(|end| union(self.ends[end], other.ends[end])),
             moved: union(self.moved, other.moved),
         }
     }
@@ -349,7 +350,7 @@ impl Boxes {
     /// between two boxes is in the box between them.
     fn distance_squared(&self, part: f32, point: Vec3) -> f32 {
         let [from, to] = self.ends;
-        let [low, high] = [0, 1].map(|corner: usize| from[corner].lerp(to[corner], part));
+        let [low, high] = [0, 1].map_inline(|corner: usize| from[corner].lerp(to[corner], part));
         point.distance_squared(point.max(low).min(high))
     }
 }

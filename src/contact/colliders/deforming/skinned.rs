@@ -1,5 +1,6 @@
 //! Skinned meshes as colliders.
 
+use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::{Affine3A, Vec3};
@@ -39,7 +40,7 @@ impl SkinnedTriangles {
             .iter()
             .map(|&vertex| positions[vertex as usize])
             .collect();
-        let of = |corners: &[u32; 3]| corners.map(|corner| merged[corner as usize]);
+        let of = |corners: &[u32; 3]| corners.map_inline(|corner| merged[corner as usize]);
         let bound = |&vertex: &u32| {
             let vertex = vertex as usize;
             let skin = skin.get(vertex).copied().unwrap_or_default();

@@ -1,5 +1,6 @@
 //! Converts shapes of parry into parts of a geometry.
 
+use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::{Quat, Vec3};
@@ -132,7 +133,7 @@ impl Parts {
 
     fn add_edges(&mut self, pose: Pose, edges: &[SharpEdge], radius: f32) {
         self.edges.extend(edges.iter().map(|edge| SharpEdge {
-            ends: edge.ends.map(|end| pose.transform_point(end)),
+            ends: edge.ends.map_inline(|end| pose.transform_point(end)),
             outward: pose.rotation * edge.outward,
             radius: edge.radius + radius,
             ..*edge
@@ -293,7 +294,7 @@ fn in_pieces(edges: &[SharpEdge], radius: f32) -> Vec<SharpEdge> {
 /// Turns the triangles of a height field so that their normals point up.
 pub(crate) fn turn_up(vertices: &[Vec3], triangles: &mut [[u32; 3]]) {
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+        let [a, b, c] = triangle.map_inline(|corner| vertices[corner as usize]);
         if (b - a).cross(c - a).y < 0.0 {
             triangle.swap(1, 2);
         }

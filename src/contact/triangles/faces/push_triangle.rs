@@ -1,5 +1,6 @@
 //! Pushes one triangle.
 
+use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::{ResumePoint, TrianglePush};
@@ -65,7 +66,7 @@ impl TrianglePush<'_> {
         push_out: &PushOut,
     ) -> f32 {
         let (weights, normal) = (touch.weights, touch.normal);
-        let parts = [0, 1, 2].map(|corner| weights[corner] * corners.inverse_masses[corner]);
+        let parts = [0, 1, 2].map_inline(|corner| weights[corner] * corners.inverse_masses[corner]);
         let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
         // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
         let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);

@@ -1,5 +1,6 @@
 //! One spring of a chain, in the system of equations of all springs of that chain.
 
+use crate::cloth::MapInline;
 use crate::{
     cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, View, W, X},
     solver::kernels::{each::three, step_scale::StepScale},
@@ -138,7 +139,7 @@ impl SpringBand {
     /// Takes over the parameters of a sub-step.
     pub fn soften(&mut self, step_scale: StepScale) {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
-            *softness = compliance.map(|compliance| compliance * step_scale.inverse_weight);
+            *softness = compliance.map_inline(|compliance| compliance * step_scale.inverse_weight);
         }
         self.kept = if self.is_elastic() {
             step_scale.kept

@@ -1,0 +1,27 @@
+//! Arrays in code that runs for each particle, spring or pair.
+
+/// Maps an array as [`array::map`] does, by code that is inlined. That of the standard library is made of several calls (Rust 1.95),
+/// which stay calls where a crate is compiled in several units: layers take a third longer.
+pub(crate) trait MapInline<T, const N: usize> {
+    /// The array of what `map` returns for each element, in order.
+    fn map_inline<U>(self, map: impl FnMut(T) -> U) -> [U; N];
+}
+
+macro_rules! map_inline {
+    ($count:literal: $($element:ident)+) => {
+        impl<T> MapInline<T, $count> for [T; $count] {
+            #[inline(always)]
+            fn map_inline<U>(self, mut map: impl FnMut(T) -> U) -> [U; $count] {
+                let [$($element),+] = self;
+                [$(map($element)),+]
+            }
+        }
+    };
+}
+
+map_inline!(1: a);
+map_inline!(2: a b);
+map_inline!(3: a b c);
+map_inline!(4: a b c d);
+map_inline!(6: a b c d e f);
+map_inline!(8: a b c d e f g h);
