@@ -91,7 +91,7 @@ impl Zones {
                 tests += 2 * members.len();
                 self.move_as_one(members, round + 1);
             }
-            counts.take(pairs.len() / 2 + 2 * tests);
+            counts.take(pairs.len() / 4 + tests);
             counts.is_certain = is_certain;
             if is_certain || counts.work == 0 {
                 break;

@@ -15,6 +15,7 @@ use super::{
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place},
     sheet::Sheet,
+    work::{WORK_OF_CROSSING, WORK_OF_EIGHT, WORK_OF_GATHERING},
 };
 
 /// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
@@ -32,15 +33,6 @@ const MOST_AHEAD: f32 = 0.5;
 
 /// Number of sub-steps of motion for which patches have to be apart, for their features not to be compared.
 const ENOUGH: f32 = 2.0;
-
-/// Units of work for the features of two patches that are gathered, and culled by boxes.
-const WORK_OF_GATHERING: usize = 16;
-
-/// Units of work for a feature that is compared with eight others.
-const WORK_OF_EIGHT: usize = 3;
-
-/// Units of work for an edge and a face that may cross, in f64.
-const CROSSING: usize = 3;
 
 /// Compares two patches, and lists their near features.
 pub(super) fn compare(
@@ -186,7 +178,7 @@ pub(super) fn cross(
         let [own, other] = of.map_inline(|side| &sides[side]);
         let edges = own.sheet.edges_of(own.patch);
         let faces = other.sheet.faces_of(other.patch);
-        *work = work.saturating_sub(CROSSING * edges.len() * faces.len());
+        *work = work.saturating_sub(WORK_OF_CROSSING * edges.len() * faces.len());
         edges.iter().any(|edge| {
             let bounds = own.bounds(*edge);
             let ends = edge.map_inline(|end| own.particle(end));

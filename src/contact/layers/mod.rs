@@ -66,7 +66,7 @@ use near_features::NearFeatures;
 use near_patches::{Meets, PatchBoxes};
 use origin::Origin;
 use response::push;
-use work::Counts;
+use work::{Counts, WORK_OF_CONTACT};
 
 pub(crate) use inside::Inside;
 pub use intersections::intersections;
@@ -76,9 +76,6 @@ pub(crate) use sheet::Sheet;
 
 /// Largest number of times that features are looked for in a sub-step near those that were pushed.
 const ROUNDS: u32 = 4;
-
-/// Units of work for a contact that is listed and pushed.
-const WORK_OF_CONTACT: usize = 8;
 
 /// Largest number of sub-steps that layers want.
 const MOST_SUBSTEPS: f32 = 16.0;

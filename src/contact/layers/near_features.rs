@@ -19,7 +19,7 @@ use super::{
     near_patches::{Meets, PatchBoxes},
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place, measure},
-    work::{Counts, MOST_LISTED},
+    work::{Counts, MOST_LISTED, WORK_OF_MEASURING},
 };
 use crate::cloth::MapInline;
 
@@ -209,7 +209,7 @@ impl NearFeatures {
             let place = Place::of(pair, cloths, motion, reserve);
             if slack > place.used + reserve {
                 pair.slack = slack;
-                counts.take(pair.count as usize);
+                counts.take(WORK_OF_MEASURING * pair.count as usize);
                 let candidates = &mut self.candidates[pair.candidates()];
                 measure(pair, candidates, motion, &place, used_before);
             } else {
@@ -230,7 +230,7 @@ impl NearFeatures {
                 pair.count = (self.candidates.len() - first) as u32;
                 self.listed += pair.count as usize;
                 let candidates = &mut self.candidates[first..];
-                counts.take(4 * candidates.len());
+                counts.take(candidates.len());
                 measure(pair, candidates, motion, &place, 0.0);
                 pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
             }

@@ -1,10 +1,21 @@
 //! The limits of a tick's work.
 
-/// Work limits of a tick for each particle, and in total. A unit takes some 5 ns: a third of a feature compared with
-/// eight others, or a node visited. A sheet that runs into itself at 20 m/s needs less (`cargo run -p lab -- self`).
-const MOST_WORK: usize = 1 << 17;
+/// Work limits of a tick for each particle, and in total. A unit takes some 10 ns, 5 to 16 by scene: so a tick takes no more
+/// than about 0.2 s. A sheet that runs into itself at 20 m/s needs less (`cargo run -p lab -- self`).
+const MOST_WORK: usize = 1 << 16;
 const LEAST_WORK_OF_ALL: usize = 1 << 22;
-const MOST_WORK_OF_ALL: usize = 1 << 28;
+const MOST_WORK_OF_ALL: usize = 1 << 24;
+
+/// Units of work for the features of two patches that are gathered, and for a feature that is compared with eight others.
+pub(super) const WORK_OF_GATHERING: usize = 4;
+pub(super) const WORK_OF_EIGHT: usize = 8;
+
+/// Units of work for a listed pair that is measured, and for a contact that is listed and pushed.
+pub(super) const WORK_OF_MEASURING: usize = 3;
+pub(super) const WORK_OF_CONTACT: usize = 10;
+
+/// Units of work for an edge and a face that may cross, in f64.
+pub(super) const WORK_OF_CROSSING: usize = 3;
 
 /// The part of these limits for particles of patches that began inside each other: these have no guarantee to keep.
 const OF_TANGLED: f32 = 1.0 / 16.0;
