@@ -1,6 +1,6 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
-pub(crate) mod arrays;
+mod arrays;
 mod by_particle;
 mod cut;
 mod error;

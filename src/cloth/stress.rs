@@ -1,9 +1,9 @@
 //! The stress in a cloth, from the forces of its springs.
 
-use crate::cloth::arrays::MapInline;
 use bevy::math::Vec3;
 
 use super::surface::Surface;
+use crate::cloth::arrays::MapInline;
 
 /// Number of times that stresses are shared with neighbours: a patch of two rings of faces.
 const RINGS: usize = 2;

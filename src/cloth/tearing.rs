@@ -1,6 +1,5 @@
 //! Cloth that tears where it is loaded too much.
 
-use crate::cloth::arrays::MapInline;
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
@@ -11,6 +10,7 @@ use super::{
     error::ClothError, material::ClothMaterial, particles::ClothParticles,
     springs::StiffnessFactors, stress::Stress, surface::Surface, tears::ClothTears,
 };
+use crate::cloth::arrays::MapInline;
 
 /// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
 /// across it from tick to tick, an edge at a time.

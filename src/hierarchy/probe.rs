@@ -1,12 +1,11 @@
 //! Regions to search a tree for.
 
-use crate::cloth::MapInline;
 use bevy::{
     math::{DQuat, DVec3, Isometry3d, Mat3, Vec3},
     reflect::Reflect,
 };
 
-use crate::cloth::{LANES, View, X, Y, Z};
+use crate::cloth::{LANES, MapInline, View, X, Y, Z};
 
 /// Factor on lengths, so that rounding in `f32` never makes a bound too small. A bound and its test take fewer than 20
 /// roundings of half an ε each; this is 84 ε.

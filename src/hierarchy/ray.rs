@@ -1,6 +1,5 @@
 //! Which face, or segment of a rope, a ray hits first: a top-down query with the ray as its probe.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Ray3d, Vec3, bounding::BoundingSphere};
 
 use super::{
@@ -11,7 +10,7 @@ use super::{
     tree::QuadTree,
     volume::BoundingVolume,
 };
-use crate::cloth::{ClothParticles, Surface};
+use crate::cloth::{ClothParticles, MapInline, Surface};
 
 /// Where a ray hits a face, or a segment of a rope.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,9 @@
 //! The motion of the damping frame through a tick.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3};
 
 use super::step::{DampingFrame, TickStep};
-use crate::cloth::{Block, DX, DY, DZ, LANES, W};
+use crate::cloth::{Block, DX, DY, DZ, LANES, MapInline, W};
 
 /// As many blocks are summed in single precision: their sum is rounded by less than a hundred thousandth.
 const SUMMED: usize = 64;

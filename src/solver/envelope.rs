@@ -1,6 +1,5 @@
 //! The limits of the envelope in which a cloth is simulated well.
 
-use crate::cloth::MapInline;
 use std::fmt;
 
 use bevy::reflect::Reflect;
@@ -31,10 +30,12 @@ pub enum ClothLimit {
     /// A ball or capsule thinner than half a spacing approaches the cloth by more than 6 of its radii in a sub-step: it
     /// may pass through.
     SmallFastCollider,
-    /// Layers may have passed through each other, in one of two cases. Pins force them through each other. Or they are so
-    /// fast, so thick or so crowded that contact would be too much work. Then nothing keeps them apart for the rest of
-    /// the tick and the next eight. For each particle, a tick compares at most some 350,000 pairs of features and lists
-    /// 512; for all particles, at most some 715 million.
+    /// Pins force layers through each other, or contact of layers is too much work: they are so fast, so thick or so crowded.
+    /// A tick compares between 4 and 17 million pairs of features of up to 8,000 particles, and 2,000 for each particle of
+    /// more. It lists 512 for each. With more work, all cloths that may touch each other stop for the rest of the tick, where
+    /// their layers were last apart, and go on in the next. After eight such ticks in a row nothing keeps them apart for the
+    /// rest of the tick and the next eight. The same holds at once if pins move meanwhile, or if any patches began inside
+    /// each other.
     Layers,
     /// The cloth began deep inside a collider, where the nearest ways out lead apart. Each piece of it is let out on one
     /// side, or left alone where another collider or a pin inside bars the way.
@@ -113,8 +114,8 @@ impl ClothLimit {
             format!("{percent:.decimals$} %")
         };
         let [found, good] = match self {
-            Self::Stretch | Self::Tolerance => [quantity, good_up_to].map_inline(percent),
-            _ => [quantity, good_up_to].map_inline(digits),
+            Self::Stretch | Self::Tolerance => [quantity, good_up_to].map(percent),
+            _ => [quantity, good_up_to].map(digits),
         };
         let what = match self {
             Self::Stretch | Self::Tolerance => "",

@@ -7,7 +7,6 @@
 //! order, which continues from these errors, needs that. Forward and back, it gained no energy in any mesh tried; in
 //! one direction alone, it gained ten times the initial energy.
 
-use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::Vec4;
@@ -18,7 +17,9 @@ use super::{
     spring_solver::{Motion, SolvedSubstep, SpringSolver},
     stretch::Stretch,
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Layout, Spring, SpringKind, SpringList, W, X, Y, Z};
+use crate::cloth::{
+    Block, DX, DY, DZ, LANES, Layout, MapInline, Spring, SpringKind, SpringList, W, X, Y, Z,
+};
 
 /// Half of the lanes: as many numbers as a vector has.
 const HALF: usize = LANES / 2;

@@ -14,11 +14,10 @@
 //! begins inside such a ball was moved there by nothing. So a displacement, relative to that of the place, is never
 //! longer than before.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::step::SubStep;
-use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, MapInline};
 
 /// Max distances and backstops of the particles of a cloth in a tick. Empty, it costs nothing.
 #[derive(Debug, Default, Clone)]

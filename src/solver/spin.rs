@@ -9,11 +9,10 @@
 //! Pins need not be exactly on the line. Beside it they turn the cloth by their distance times their pull, which is left out: by
 //! less than the sweep, as far as they count as on it.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::step::{PinMotion, TickStep};
-use crate::cloth::{ClothParticles, DX, LANES, Slot, View, W, X};
+use crate::cloth::{ClothParticles, DX, LANES, MapInline, Slot, View, W, X};
 
 /// Largest distance of pins from the line, as a fraction of its length, and largest difference of their motions.
 const STRAIGHT: f32 = 0.02;

@@ -1,9 +1,8 @@
 //! The stretch of springs beyond their rest lengths.
 
-use crate::cloth::MapInline;
 use bevy::reflect::Reflect;
 
-use crate::cloth::{ClothParticles, SpringKind, Springs};
+use crate::cloth::{ClothParticles, MapInline, SpringKind, Springs};
 
 /// Stretch of a cloth: length / rest length − 1 of its most stretched spring, at least 0.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]

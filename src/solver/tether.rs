@@ -4,12 +4,12 @@
 //! unilateral constraint from each particle straight to a pin has no such problem (long range attachments, Kim,
 //! Chentanez and Müller 2012). It never adds energy: it acts only beyond its length, and a pin does not move.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec2;
 
 use super::kernels::Kernels;
 use crate::cloth::{
-    Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, Slot, Surface,
+    Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, MapInline, Slot,
+    Surface,
 };
 
 /// Each particle is tethered to all pins if there are up to this many, else to the nearest.

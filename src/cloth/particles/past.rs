@@ -1,8 +1,8 @@
 //! History of the particles' motion, for a second-order method.
 
-use crate::cloth::arrays::MapInline;
 use bevy::math::Vec3;
 
+use crate::cloth::arrays::MapInline;
 use crate::cloth::lanes::{Block, LANES, Lanes, Layout};
 
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the later one, then of

@@ -1,6 +1,5 @@
 //! Operations of the solver and the plugin on all particles.
 
-use crate::cloth::arrays::MapInline;
 use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::{
@@ -9,6 +8,7 @@ use super::{
     validity::is_valid,
 };
 use crate::cloth::{
+    arrays::MapInline,
     error::ClothError,
     lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X},
     material::ClothMaterial,

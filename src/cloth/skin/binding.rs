@@ -1,11 +1,10 @@
 //! Linear blend skinning of particles and vertices.
 
-use crate::cloth::arrays::MapInline;
 use bevy::math::{Affine3A, Vec3, Vec3A};
 
 use crate::cloth::surface::JointWeights;
 #[cfg(feature = "mesh")]
-use crate::cloth::{error::ClothError, surface::Surface};
+use crate::cloth::{arrays::MapInline, error::ClothError, surface::Surface};
 
 /// Linear blend skinning of a surface's particles, in the mesh's metres, before any scale.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -175,10 +174,8 @@ mod tests {
             let row = (vertex / 2) as f32;
             Vec3::new((vertex % 2) as f32, row, 0.1 * (row * 1.7).sin())
         };
-        let places: Vec<Vec3> = (0..40).map_inline(place).collect();
-        let triangles = (0..38)
-            .map_inline(|first| [first, first + 1, first + 2])
-            .collect();
+        let places: Vec<Vec3> = (0..40).map(place).collect();
+        let triangles = (0..38).map(|first| [first, first + 1, first + 2]).collect();
         let skin = |vertex: u32| JointWeights {
             joints: [vertex, vertex + 1, vertex * 3, vertex / 3]
                 .map_inline(|joint| (joint % 7) as u16),
@@ -191,7 +188,7 @@ mod tests {
             ..TriangleMesh::default()
         };
         let surface = Surface::of_mesh(&mesh, 0.0, Vec3::ONE).expect("a surface");
-        (surface, places, (0..40).map_inline(skin).collect())
+        (surface, places, (0..40).map(skin).collect())
     }
 
     fn joints() -> Vec<Affine3A> {
@@ -200,7 +197,7 @@ mod tests {
             let place = Vec3::new(index as f32, 5.0, -2.0);
             Affine3A::from_scale_rotation_translation(Vec3::splat(0.5), turn, place)
         };
-        (0..7).map_inline(joint).collect()
+        (0..7).map(joint).collect()
     }
 
     /// Six roundings of numbers up to 30 m: four sums of four products each.
@@ -213,7 +210,7 @@ mod tests {
         skinning.places(&joints, &mut found);
         skinning.normals(&joints, &mut normals);
         for (vertex, (place, skin)) in places.iter().zip(&skin).enumerate() {
-            let sum: f64 = skin.weights.iter().map_inline(|w| f64::from(*w)).sum();
+            let sum: f64 = skin.weights.iter().map(|w| f64::from(*w)).sum();
             let mut truth = DVec3::ZERO;
             for (joint, weight) in skin.joints.iter().zip(skin.weights) {
                 let joint =

@@ -1,9 +1,9 @@
 //! Normals of a moved surface.
 
-use crate::cloth::arrays::MapInline;
 use bevy::math::Vec3;
 
 use super::Surface;
+use crate::cloth::arrays::MapInline;
 
 impl Surface {
     /// Computes the normal at each particle, of length 1, for particles at `positions`: the mean of its faces' normals,

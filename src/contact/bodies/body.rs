@@ -1,11 +1,10 @@
 //! Dynamic colliders: bodies with a mass, which cloth pushes back.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Isometry3d, Quat, Vec3};
 
 use super::carriers::Carriers;
 use crate::{
-    cloth::{Block, ClothParticles, LANES},
+    cloth::{Block, ClothParticles, LANES, MapInline},
     contact::{
         colliders::{BodyMass, ColliderSubstep, MovingCollider},
         friction::Impulse,

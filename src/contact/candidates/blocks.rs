@@ -1,10 +1,9 @@
 //! The particles and triangles that each collider may touch in a tick, in blocks of eight.
 
-use crate::cloth::MapInline;
 use std::{ops::Range, sync::Arc};
 
 use crate::{
-    cloth::{Fan, Fans, LANES, Lanes, Layout, Slot, Surface},
+    cloth::{Fan, Fans, LANES, Lanes, Layout, MapInline, Slot, Surface},
     contact::friction::FrictionBudget,
 };
 

@@ -1,6 +1,5 @@
 //! The points at which two colliders are nearest to each other, by parry.
 
-use crate::cloth::MapInline;
 use bevy::math::{Isometry3d, Vec3};
 use parry3d::{
     math::Pose,
@@ -9,6 +8,7 @@ use parry3d::{
 };
 
 use super::shape::ColliderShape;
+use crate::cloth::MapInline;
 
 /// A point of a contact manifold.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]

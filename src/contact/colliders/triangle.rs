@@ -1,7 +1,8 @@
 //! Nearest points between a triangle and a point or a segment.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
+
+use crate::cloth::MapInline;
 
 /// The nearest points of a triangle and a core.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,9 @@
 //! Cloth that begins a tick deep inside a collider, which appeared or was teleported there.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use crate::{
-    cloth::{ClothParticles, LANES, Slot, Surface},
+    cloth::{ClothParticles, LANES, MapInline, Slot, Surface},
     contact::{
         candidates::{Candidate, ContactBlock, ContactSettings},
         colliders::{ColliderShape, ColliderSubstep, MovingCollider, Nearest},

@@ -1,9 +1,8 @@
 //! Bodies that stand on other colliders, through the cloth between them.
 
 use super::{Detection, send_on};
-use crate::cloth::MapInline;
 use crate::{
-    cloth::ClothParticles,
+    cloth::{ClothParticles, MapInline},
     contact::{
         bodies::{Body, ContactStep, Near, Stand, StandingResult, Supports},
         candidates::{Candidates, ContactSettings, Touch},

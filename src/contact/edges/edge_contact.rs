@@ -1,8 +1,8 @@
 //! Tests of a cloth triangle against the edges of a shape.
 
-use crate::cloth::MapInline;
 use bevy::math::{Isometry3d, Vec3};
 
+use crate::cloth::MapInline;
 use crate::contact::colliders::{ColliderShape, SharpEdge, nearest};
 
 /// An edge counts as below a triangle up to this far beyond its sides, in barycentric weights, so that neighbours leave

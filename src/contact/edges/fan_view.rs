@@ -1,10 +1,9 @@
 //! A particle's triangles in the frame of a shape.
 
-use crate::cloth::MapInline;
 use bevy::math::{Affine3A, Vec3};
 
 use crate::{
-    cloth::{Block, Slot},
+    cloth::{Block, MapInline, Slot},
     contact::colliders::ColliderSubstep,
 };
 

@@ -3,7 +3,6 @@
 //! A triangle whose corners are all outside a solid can only intersect it where one of the solid's edges passes through
 //! the triangle. So only edges are tested beside the particles, and nothing for flat surfaces.
 
-use crate::cloth::MapInline;
 use bevy::math::{Affine3A, Vec3};
 
 use super::{
@@ -12,7 +11,7 @@ use super::{
     shape_memory::{Nearness, ShapeMemory},
 };
 use crate::{
-    cloth::{ClothParticles, Fan, Slot, Surface},
+    cloth::{ClothParticles, Fan, MapInline, Slot, Surface},
     contact::{
         candidates::{Candidate, ContactSettings, Guard},
         colliders::{ColliderSubstep, at},

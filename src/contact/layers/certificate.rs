@@ -8,10 +8,10 @@
 //! Pairs that are not contacts are a thickness apart without a test. If all vertices with faces and all edges with
 //! edges are apart, no two triangles intersect.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{members::Members, pair::NearPair, work::Counts};
+use crate::cloth::MapInline;
 
 /// Smallest gap left between features, as a fraction of the thickness and of the distance at the beginning of the
 /// sub-step.

@@ -1,6 +1,5 @@
 //! Compares the features of two patches: vertices with faces, and edges with edges.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::{Vec3, Vec3A};
@@ -17,6 +16,7 @@ use super::{
     sheet::Sheet,
     work::{WORK_OF_CROSSING, WORK_OF_EIGHT, WORK_OF_GATHERING},
 };
+use crate::cloth::MapInline;
 
 /// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
 /// between them show where both bend, and only must not pass.

@@ -1,6 +1,5 @@
 //! Counts intersecting triangles of cloths: by brute force, in f64.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3};
 
 use crate::cloth::Surface;
@@ -16,7 +15,7 @@ pub fn intersections(cloths: &[(&Surface, Vec<Vec3>)]) -> usize {
             faces.map(move |&particles| Triangle {
                 cloth,
                 particles,
-                corners: particles.map_inline(|particle| places[particle as usize].as_dvec3()),
+                corners: particles.map(|particle| places[particle as usize].as_dvec3()),
             })
         })
         .collect();

@@ -3,12 +3,12 @@
 //! Rounded a little differently than those of [`Nearest`](super::pair::Nearest): good enough to tell which pairs to
 //! list, not for their contact.
 
-use crate::cloth::MapInline;
 use std::ops::{Add, Mul, Sub};
 
 use multiversion::multiversion;
 
 use super::bounds::Bounds;
+use crate::cloth::MapInline;
 
 /// Eight numbers.
 #[derive(Debug, Clone, Copy)]

@@ -1,10 +1,9 @@
 //! The particles of pairs that may touch in a sub-step, in one array.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{mean_pushes::MeanPushes, motion::Motion, origin::Origin, participant::Participant};
-use crate::cloth::Slot;
+use crate::cloth::{MapInline, Slot};
 
 /// No member, no pair.
 pub(super) const NOBODY: u32 = u32::MAX;

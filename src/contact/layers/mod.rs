@@ -24,8 +24,9 @@
 //!    it has not passed, or it is stopped.
 //! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
 //!
-//! Patches that begin intersected are left alone until they are apart. More work than the [limit](work) is not done, and
-//! reported; such patches have less of it. Resting layers are [held](mean_pushes) for a few sub-steps, while none can have come
+//! Patches that begin intersected are left alone until they are apart. With more work than the [limit](work) all cloths that
+//! may touch stop for the rest of the tick, where they were last apart, and it is reported. Nothing is kept apart for some
+//! ticks after too many of these in a row, if any pin moves meanwhile, or if any patches began intersected. Resting layers are [held](mean_pushes) for a few sub-steps, while none can have come
 //! near enough to pass.
 
 mod bounds;
@@ -38,6 +39,7 @@ mod inside;
 mod intersections;
 mod joined;
 mod lanes;
+mod last_test;
 mod mean_pushes;
 mod members;
 mod motion;
@@ -59,12 +61,14 @@ mod work;
 use certificate::Zones;
 use circumstances::Circumstances;
 use contacts::Contacts;
+use last_test::LastTest;
 use mean_pushes::MeanPushes;
 use members::Members;
 use motion::Motion;
 use near_features::NearFeatures;
 use near_patches::{Meets, PatchBoxes};
 use origin::Origin;
+use participant::thinnest;
 use response::push;
 use work::{Counts, WORK_OF_CONTACT};
 
@@ -80,14 +84,9 @@ const ROUNDS: u32 = 4;
 /// Largest number of sub-steps that layers want.
 const MOST_SUBSTEPS: f32 = 16.0;
 
-/// Number of ticks without contact after one with too much work.
+/// Number of ticks in a row that too much work may stop cloths, and of those without contact after one more.
+const MOST_STOPPED: u32 = 8;
 const TICKS_OFF: u32 = 8;
-
-/// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
-/// of their last pushes, for this many sub-steps at most, and this fraction of the way.
-const HELD: f32 = 0.08;
-const LONGEST_HOLD: u32 = 3;
-const PART_OF_WAY: f32 = 0.5;
 
 /// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
 const RESTING_SPEED: f32 = 0.25;
@@ -112,30 +111,16 @@ pub(crate) struct MutualContact {
     /// Positions before colliders push particles in the sub-step, if noted.
     before_colliders: Origin,
     is_known: bool,
-    /// Number of ticks left without contact.
+    /// Number of ticks in a row in which too much work stopped the cloths, and of those left without contact.
+    stopped: u32,
     ticks_off: u32,
     counts: Counts,
-}
-
-/// The last sub-step in which pairs were tested.
-#[derive(Debug, Default, Clone)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-struct LastTest {
-    /// Positions of all particles at its end: up to there, layers are apart.
-    passed: Origin,
-    /// Number of sub-steps since, and of those left without a test.
-    waited: u32,
-    wait: u32,
-    /// Largest approach before others can touch (m).
-    free: f32,
-    /// The part of it that resting layers keep, to be held (m).
-    reserve: f32,
 }
 
 impl MutualContact {
     /// Forgets all pairs: the particles are others, or have jumped.
     pub fn forget(&mut self) {
-        (self.is_known, self.ticks_off) = (false, 0);
+        (self.is_known, self.stopped, self.ticks_off) = (false, 0, 0);
     }
 
     /// Sets the pairs of particles that are sewn together, by their places among the particles of all cloths.
@@ -148,6 +133,9 @@ impl MutualContact {
     /// Begins a tick of these cloths. `meets` returns whether two of them may touch.
     pub fn begin(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) {
         let was_lost = self.counts.is_lost;
+        if !was_lost {
+            self.stopped = 0;
+        }
         let particles = cloths.iter().map(|cloth| cloth.particles.len());
         let particles = particles.sum::<usize>();
         self.counts = Counts::new(particles);
@@ -161,7 +149,7 @@ impl MutualContact {
         if is_same && !is_new && !was_lost {
             self.near.begin_tick(&mut self.motion);
             self.tighten();
-            let approach = self.last.passed.approach(cloths);
+            let approach = self.last.begin_tick(cloths);
             if approach == 0.0 || approach <= self.last.free {
                 return;
             }
@@ -173,7 +161,8 @@ impl MutualContact {
             // Both ends of the sub-step are here.
             self.motion.end.clone_from(&self.motion.start);
         } else {
-            let begins = is_new || was_lost;
+            let has_stayed = self.stopped > 0 && self.last.passed.are_pins_still(cloths);
+            let begins = is_new || (was_lost && !has_stayed);
             if !begins {
                 self.tighten();
             }
@@ -189,7 +178,7 @@ impl MutualContact {
             (self.is_known, self.ticks_off) = (true, 0);
         }
         (self.last.wait, self.last.waited) = (0, 0);
-        self.last.passed.set(cloths);
+        self.last.pass(cloths);
         match self.look(cloths, &meets) {
             Some(free) => self.last.free = free,
             None => self.lose(),
@@ -220,8 +209,8 @@ impl MutualContact {
         pile.max(fast).clamp(1.0, MOST_SUBSTEPS) as u32
     }
 
-    /// Number of sub-steps of the tick in which layers may have passed through each other: there was too much work, or
-    /// pairs could not be parted, as when pins force them together.
+    /// Number of sub-steps of the tick in which layers were stopped or may have passed through each other: there was too much
+    /// work, or pairs could not be parted, as when pins force them together.
     pub fn lost(&self) -> u32 {
         self.counts.lost
     }
@@ -252,7 +241,7 @@ impl MutualContact {
     ) -> f32 {
         if self.counts.is_lost {
             self.counts.lost += 1;
-            return 0.0;
+            return self.stay(cloths, is_pushed);
         }
         self.counts.substeps += 1;
         self.last.waited += 1;
@@ -276,10 +265,11 @@ impl MutualContact {
         self.mean_pushes.pass();
         self.members
             .scatter(cloths, is_pushed, &mut self.mean_pushes);
-        if !is_apart {
-            self.lose();
+        let is_known = self.counts.is_certain || self.counts.work > 0;
+        if !(is_apart && is_known) {
             self.counts.lost += 1;
-            return pushed + held;
+            self.stop();
+            return pushed + held + self.stay(cloths, is_pushed);
         }
         self.counts.lost += u32::from(!self.counts.is_certain);
         let thinnest = thinnest(cloths);
@@ -288,14 +278,10 @@ impl MutualContact {
         self.motion.pass(cloths, REFERENCE * thinnest);
         self.last.reserve = 0.0;
         if !self.contacts.pairs.is_empty() {
-            let most = HELD * thinnest;
-            self.last.free = self.last.free.min(most);
-            if self.members.are_resting(RESTING_SPEED * dt) {
-                self.last.reserve = most.min(LONGEST_HOLD as f32 * pace / PART_OF_WAY);
-                self.last.wait = ((PART_OF_WAY * self.last.free / pace) as u32).min(LONGEST_HOLD);
-            }
+            let are_resting = self.members.are_resting(RESTING_SPEED * dt);
+            self.last.hold(thinnest, pace, are_resting);
         }
-        self.last.passed.set(cloths);
+        self.last.pass(cloths);
         self.last.waited = 0;
         pushed + held
     }
@@ -383,16 +369,34 @@ impl MutualContact {
         Some(slack.min(unfolded).min(2.0 * clearance))
     }
 
+    /// Stops the cloths for the rest of the tick, where they were last apart. Keeps nothing apart after many such ticks, so
+    /// that they go on, if some began inside each other, or if they have not been tested in this tick.
+    fn stop(&mut self) {
+        let stopped = self.stopped + 1;
+        let has_tangled = self.near.tangled_share(self.motion.patches.len()) > 0.0;
+        let may_stop = stopped <= MOST_STOPPED && self.last.is_of_tick && !has_tangled;
+        self.lose();
+        if may_stop {
+            (self.stopped, self.ticks_off) = (stopped, 0);
+        }
+    }
+
+    /// Keeps stopped cloths where they are, until a pin moves. Returns how far they had moved, at most (m).
+    fn stay(&mut self, cloths: &mut [Participant], is_pushed: &mut [bool]) -> f32 {
+        if self.stopped == 0 {
+            return 0.0;
+        }
+        if !self.last.passed.are_pins_still(cloths) {
+            self.lose();
+            return 0.0;
+        }
+        self.last.passed.put_back(cloths, is_pushed)
+    }
+
     /// Keeps nothing apart for the rest of the tick and some more.
     fn lose(&mut self) {
-        (self.counts.is_lost, self.ticks_off) = (true, TICKS_OFF);
+        (self.counts.is_lost, self.stopped, self.ticks_off) = (true, 0, TICKS_OFF);
         self.near.clear();
         self.contacts.pairs.clear();
     }
-}
-
-/// The smallest thickness (m).
-fn thinnest(cloths: &[Participant]) -> f32 {
-    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
-    each.fold(f32::INFINITY, f32::min)
 }

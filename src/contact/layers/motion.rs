@@ -10,11 +10,10 @@
 //! `used` only grows: by the deviation from the reference, however often that is taken anew. Trembling around the
 //! reference does not add up. Patches that move alike use nothing up.
 
-use crate::cloth::MapInline;
 use bevy::math::{Vec3A, Vec4};
 
 use super::{bounds::Bounds, participant::Participant};
-use crate::cloth::LANES;
+use crate::cloth::{LANES, MapInline};
 
 /// A patch at the beginning and at the end of a sub-step.
 #[derive(Debug, Default, Clone, Copy)]

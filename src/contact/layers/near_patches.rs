@@ -3,10 +3,10 @@
 //! A box around each patch leaves it clearance to move. A patch that leaves its box gets another one, for which the trees
 //! are searched from the top down.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{bounds::Bounds, motion::Motion, participant::Participant, sheet::Node};
+use crate::cloth::MapInline;
 
 /// Room around a patch, as a fraction of the shortest spacing, and the number of sub-steps of motion ahead.
 const ROOM: f32 = 0.25;

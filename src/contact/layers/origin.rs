@@ -1,10 +1,9 @@
 //! Earlier positions of particles, to measure their approach since.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::participant::Participant;
-use crate::cloth::{LANES, Lanes, Slot, X, Y, Z};
+use crate::cloth::{LANES, Lanes, MapInline, Slot, X, Y, Z};
 
 /// Earlier positions of all particles of some cloths, each in its own frame, block by block (m). Empty lanes are NaN.
 #[derive(Debug, Default, Clone)]
@@ -36,6 +35,42 @@ impl Origin {
 
     pub fn clear(&mut self) {
         self.cloths.clear();
+    }
+
+    /// Whether no pinned particle has moved since.
+    pub fn are_pins_still(&self, cloths: &[Participant]) -> bool {
+        self.cloths.iter().zip(cloths).all(|(places, cloth)| {
+            let mut each = places.iter().zip(cloth.particles.blocks());
+            each.all(|(before, block)| {
+                (0..LANES).all(|lane| {
+                    let before = Vec3::from(before.map_inline(|axis| axis[lane]));
+                    // Empty lanes are NaN.
+                    block.inverse_mass(lane) > 0.0
+                        || before.is_nan()
+                        || before == block.position(lane)
+                })
+            })
+        })
+    }
+
+    /// Puts all particles that may move back where they were, at rest, and marks their cloths. Returns how far, at most (m).
+    pub fn put_back(&self, cloths: &mut [Participant], is_pushed: &mut [bool]) -> f32 {
+        let mut farthest = 0.0_f32;
+        let each = self.cloths.iter().zip(cloths).zip(is_pushed);
+        for ((places, cloth), is_pushed) in each.filter(|((_, cloth), _)| !cloth.is_fixed) {
+            *is_pushed = true;
+            for (before, block) in places.iter().zip(cloth.particles.blocks_mut()) {
+                for lane in 0..LANES {
+                    let before = Vec3::from(before.map_inline(|axis| axis[lane]));
+                    if block.inverse_mass(lane) > 0.0 && !before.is_nan() {
+                        farthest = farthest.max(before.distance(block.position(lane)));
+                        block.set_position(lane, before);
+                        block.set_displacement(lane, Vec3::ZERO);
+                    }
+                }
+            }
+        }
+        farthest
     }
 
     /// Displacement of a particle since, in its cloth's frame (m); `None` if nothing is stored.

@@ -1,9 +1,9 @@
 //! Pairs of features: a vertex and a face, or two edges.
 
-use crate::cloth::MapInline;
 use bevy::math::{Vec3, Vec3A};
 
 use super::members::State;
+use crate::cloth::MapInline;
 use crate::contact::colliders::{at, nearest_of_segments, nearest_to_point};
 
 /// Split of a vertex and a face: the face's vertices belong to the second feature.

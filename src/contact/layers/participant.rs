@@ -66,3 +66,9 @@ impl<'a> Participant<'a> {
         }
     }
 }
+
+/// The smallest thickness of some cloths (m).
+pub(super) fn thinnest(cloths: &[Participant]) -> f32 {
+    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
+    each.fold(f32::INFINITY, f32::min)
+}

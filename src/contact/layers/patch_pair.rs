@@ -1,11 +1,11 @@
 //! Two near patches: what they have used of their distance, and their listed features.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::Vec3A;
 
 use super::{motion::Motion, pair::Nearest, participant::Participant};
+use crate::cloth::MapInline;
 
 /// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
 const FRESH: f32 = 0.22;

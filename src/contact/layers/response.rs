@@ -1,9 +1,9 @@
 //! Keeps layers apart at the end of a sub-step.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3A;
 
 use super::{contacts::Contacts, members::Members, pair::NearPair};
+use crate::cloth::MapInline;
 
 /// Number of times that overlapping pairs are pushed in a sub-step: the weight of a pile has to reach the floor through
 /// its layers. With 1, ten sheets shake each other by so much that friction does not hold them.

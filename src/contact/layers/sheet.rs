@@ -1,6 +1,5 @@
 //! The search structure of a surface, for contact with itself and with others.
 
-use crate::cloth::MapInline;
 use std::{ops::Range, sync::Arc};
 
 use bevy::{math::Vec3A, platform::collections::HashSet};
@@ -182,7 +181,7 @@ impl Sheet {
         }
         for &particle in owned {
             for &face in self.surface.faces().of(particle) {
-                let face = face.map_inline(|corner| {
+                let face = face.map(|corner| {
                     let known = &self.particles[from[0]..];
                     let place = known.iter().position(|&known| known == corner);
                     place.unwrap_or_else(|| {
@@ -193,8 +192,7 @@ impl Sheet {
                 self.faces.push(face);
                 let [a, b, c] = face;
                 for edge in [[a, b], [b, c], [c, a]] {
-                    let [from, to] =
-                        edge.map_inline(|end| self.particles[from[0] + usize::from(end)]);
+                    let [from, to] = edge.map(|end| self.particles[from[0] + usize::from(end)]);
                     if seen.insert([from.min(to), from.max(to)]) {
                         self.edges.push(edge);
                     }

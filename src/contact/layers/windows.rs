@@ -1,7 +1,8 @@
 //! The patches of a grid, row by row, and the windows of 2 × 2 patches over them.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
+
+use crate::cloth::MapInline;
 
 /// Number of rows and of columns of particles that a patch of a grid owns.
 pub(super) const OWNED: u32 = 2;

@@ -1,10 +1,12 @@
 //! The limits of a tick's work.
 
-/// Work limits of a tick for each particle, and in total. A unit takes some 10 ns, 5 to 16 by scene: so a tick takes no more
-/// than about 0.2 s. A sheet that runs into itself at 20 m/s needs less (`cargo run -p lab -- self`).
+/// Work limits of a tick: for each particle, but between these limits for all, and no less for each particle than the whole
+/// search at the beginning needs many times over. A unit takes some 10 ns, 5 to 16 by scene: so a tick of up to 8,000 particles
+/// takes no more than about 0.2 s.
 const MOST_WORK: usize = 1 << 16;
 const LEAST_WORK_OF_ALL: usize = 1 << 22;
 const MOST_WORK_OF_ALL: usize = 1 << 24;
+const LEAST_WORK: usize = 1 << 11;
 
 /// Units of work for the features of two patches that are gathered, and for a feature that is compared with eight others.
 pub(super) const WORK_OF_GATHERING: usize = 4;
@@ -40,7 +42,7 @@ pub(super) struct Counts {
     pub work: usize,
     /// Whether no pair of the sub-step can have passed through each other. Pairs that pins force together may.
     pub is_certain: bool,
-    /// Whether there was too much work: nothing is kept apart for the rest of the tick.
+    /// Whether there was too much work: for the rest of the tick the cloths are stopped, or nothing is kept apart.
     pub is_lost: bool,
     /// Number of sub-steps of the tick in which that was so, or a pair was not certain.
     pub lost: u32,
@@ -58,8 +60,7 @@ impl Counts {
     /// Lowers the limit. A share of the particles, `tangled` (0 to 1), began inside each other.
     pub fn tighten(&mut self, particles: usize, tangled: f32) {
         let part = 1.0 - tangled * (1.0 - OF_TANGLED);
-        let most = (part * most_work(particles) as f32) as usize;
-        self.work = self.work.min(most.max(LEAST_WORK_OF_ALL));
+        self.work = self.work.min((part * most_work(particles) as f32) as usize);
     }
 
     /// Takes this much work from the rest.
@@ -70,5 +71,6 @@ impl Counts {
 
 fn most_work(particles: usize) -> usize {
     let work = MOST_WORK.saturating_mul(particles);
-    work.clamp(LEAST_WORK_OF_ALL, MOST_WORK_OF_ALL)
+    let work = work.clamp(LEAST_WORK_OF_ALL, MOST_WORK_OF_ALL);
+    work.max(LEAST_WORK.saturating_mul(particles))
 }

@@ -1,8 +1,8 @@
 //! Penetration depth over all particles, in f64.
 
-use crate::cloth::MapInline;
 use bevy::math::{DQuat, DVec3, Isometry3d, Vec3};
 
+use crate::cloth::MapInline;
 use crate::{cloth::ClothParticles, contact::colliders::ColliderShape};
 
 /// The penetration of the deepest free particle into a shape (m), with the shape's pose in the cloth's frame; 0 if none

@@ -1,6 +1,5 @@
 //! The narrow phase by particles: each is a ball with its own radius.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
 
 use super::{
@@ -9,7 +8,7 @@ use super::{
     planes::{Frame, Planes, find_planes, push_planes},
 };
 use crate::{
-    cloth::{Block, ClothParticles, LANES, Lanes},
+    cloth::{Block, ClothParticles, LANES, Lanes, MapInline},
     contact::{
         candidates::{ContactBlock, ContactSettings},
         colliders::{ColliderShape, ColliderSubstep, Nearest},

@@ -3,7 +3,6 @@
 //! A particle's distance is a statement about positions: having moved by less since, it cannot touch, however much time
 //! has passed. From a surface that deforms, it is one about the rest of the tick. One that touched is tested against the same plane while it hardly moves, in that tick.
 
-use crate::cloth::MapInline;
 use bevy::math::{Mat3, Vec3};
 use multiversion::multiversion;
 
@@ -12,7 +11,7 @@ use super::{
     near::Near,
 };
 use crate::{
-    cloth::{Block, LANES, Lanes, View, W, X, Y, Z},
+    cloth::{Block, LANES, Lanes, MapInline, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
         colliders::{ColliderShape, ColliderSubstep},

@@ -1,10 +1,9 @@
 //! Tests of a cloth triangle against a collider, at the end of a sub-step and on the way there.
 
-use crate::cloth::MapInline;
 use bevy::math::{Isometry3d, Vec3};
 
 use crate::{
-    cloth::{Block, ClothParticles, Slot, Surface},
+    cloth::{Block, ClothParticles, MapInline, Slot, Surface},
     contact::{
         candidates::ContactSettings,
         colliders::{ColliderSubstep, MovingCollider, NearestPoints, at, nearest},

@@ -1,10 +1,9 @@
 //! Friction of triangles, at their particles: the contacts' [push](FrictionBudget) times μ is the budget of each.
 
-use crate::cloth::MapInline;
 use multiversion::multiversion;
 
 use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, MapInline, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
         friction::{FrictionBudget, larger},

@@ -3,12 +3,11 @@
 //! A block of a grid is eight cells that lie a strip apart and share no corners. So the same triangle of each can be
 //! pushed at once, and the result equals that of one push after the other.
 
-use crate::cloth::MapInline;
 use multiversion::multiversion;
 
 use super::lanes::{Cells, add_area, areas, move_corner, nearest_of_each, pushes, speeds};
 use crate::{
-    cloth::{Block, LANES, Layout, Slot, View},
+    cloth::{Block, LANES, Layout, MapInline, Slot, View},
     contact::{
         candidates::ContactBlock,
         friction::FrictionBudget,

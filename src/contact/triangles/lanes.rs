@@ -1,12 +1,11 @@
 //! Tests eight triangles against a ball, in plain loops that the compiler vectorises.
 
-use crate::cloth::MapInline;
 use std::f32::consts::PI;
 
 use bevy::math::Vec3;
 
 use crate::{
-    cloth::{DX, DY, DZ, LANES, Lanes, Layout, View, W, X, Y, Z},
+    cloth::{DX, DY, DZ, LANES, Lanes, Layout, MapInline, View, W, X, Y, Z},
     contact::{
         colliders::cap,
         friction::larger,

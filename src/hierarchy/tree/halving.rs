@@ -1,11 +1,10 @@
 //! The tree of a grid: rows and columns halved on each level, without stored nodes.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::Vec2;
 
-use crate::cloth::{ClothGrid, Layout};
+use crate::cloth::{ClothGrid, Layout, MapInline};
 
 /// A range of rows or columns on one level.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,10 +4,10 @@
 //! four blocks unites the particles of eight nodes. Uniting four of the results gives eight parents, until a node is as
 //! wide as a strip.
 
-use crate::cloth::MapInline;
 use multiversion::multiversion;
 
 use super::halving::{GridTree, Level, Part};
+use crate::cloth::MapInline;
 use crate::{cloth::Block, hierarchy::volume::Volume};
 
 /// The volumes of all levels but the last, whose nodes are the particles.

@@ -1,6 +1,5 @@
 //! Axis-aligned boxes in the cloth's frame.
 
-use crate::cloth::MapInline;
 use bevy::math::{
     DVec3, Vec3, Vec3A,
     bounding::{Aabb3d, BoundingVolume},
@@ -11,7 +10,7 @@ use super::{
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, View, X, Y, Z},
+    cloth::{LANES, MapInline, View, X, Y, Z},
     hierarchy::probe::{Core, Probe, ROUNDING},
 };
 

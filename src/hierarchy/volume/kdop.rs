@@ -1,6 +1,5 @@
 //! k-DOPs (Klosowski et al. 1998): polytopes between pairs of parallel planes with fixed directions.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
@@ -9,7 +8,7 @@ use super::{
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, View, X, Y, Z},
+    cloth::{LANES, MapInline, View, X, Y, Z},
     hierarchy::probe::{Core, Probe},
 };
 

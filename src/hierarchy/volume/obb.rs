@@ -1,6 +1,5 @@
 //! Oriented boxes.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Mat3, Vec3};
 
 use super::{
@@ -8,7 +7,7 @@ use super::{
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, View, X, Y, Z},
+    cloth::{LANES, MapInline, View, X, Y, Z},
     hierarchy::probe::{Core, Probe, ROUNDING},
 };
 

@@ -1,6 +1,5 @@
 //! Bounding spheres.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::BoundingSphere, primitives::Sphere};
 
 use super::{
@@ -8,7 +7,7 @@ use super::{
     bounding::{Lane, Volume},
 };
 use crate::{
-    cloth::{LANES, View, X, Y, Z},
+    cloth::{LANES, MapInline, View, X, Y, Z},
     hierarchy::probe::{Probe, ROUNDING},
 };
 

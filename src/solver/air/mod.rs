@@ -31,7 +31,6 @@
 //! **Cost** (64², 20 sub-steps, one thread): 4 % of a tick in a uniform wind, 6 % in any other (`cargo bench --profile
 //! dev --bench solver -- air`).
 
-use crate::cloth::MapInline;
 mod gas;
 mod pressure;
 #[cfg(test)]
@@ -45,7 +44,7 @@ pub use self::pressure::ClothPressure;
 use super::kernels::{
     AeroCoefficients, Enclosed, Kernels, LinearizedDrag, Rows, Triangles, Vec3Lanes,
 };
-use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, Surface};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, MapInline, Surface};
 use gas::{Amount, Gas};
 use wind::LocalWind;
 

@@ -1,10 +1,9 @@
 //! A wind that depends on the position, known at some positions and interpolated between them.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use crate::{
-    cloth::{ClothParticles, LANES, Layout},
+    cloth::{ClothParticles, LANES, Layout, MapInline},
     solver::kernels::{Vec3Lanes, between},
 };
 

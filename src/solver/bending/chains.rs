@@ -12,9 +12,8 @@ use super::{
     grid_creases::Solve,
     plate::Plate,
 };
-use crate::cloth::MapInline;
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, W},
+    cloth::{Block, LANES, Lanes, Layout, MapInline, W},
     solver::kernels::{Factor, Kernels, Vec3Lanes},
 };
 

@@ -1,6 +1,5 @@
 //! A chain's pentadiagonal system and a strip's tridiagonal one, factored.
 
-use crate::cloth::MapInline;
 use crate::solver::kernels::Factor;
 
 /// Puts a chain's numbers into its lane.
@@ -44,10 +43,7 @@ pub(super) fn factor_chain(
         };
         let (pivot, lower, lowest) = factor;
         let inverse = if pivot > 0.0 { 1.0 / pivot } else { 0.0 };
-        put(
-            at,
-            [lower, lowest, inverse].map_inline(|number| number as f32),
-        );
+        put(at, [lower, lowest, inverse].map(|number| number as f32));
         (two, one) = (one, (pivot, inverse));
         lower_of_one = lower;
     }
@@ -73,10 +69,7 @@ pub(super) fn factor_strip(
         } else {
             [0.0; 2]
         };
-        put(
-            row,
-            [lower, inverse, mass].map_inline(|number| number as f32),
-        );
+        put(row, [lower, inverse, mass].map(|number| number as f32));
         inverse_before = inverse;
     }
 }

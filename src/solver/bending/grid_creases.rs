@@ -7,11 +7,10 @@
 //! Only stencils with a crease are looked at in a sub-step. Each family of stencils is pushed before it is solved: one at its rest
 //! curvature stays there, however stiff the others are.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::{creasing::ClothCreasing, plate::Plate};
-use crate::cloth::{Block, ClothGrid, DX, DY, DZ, Layout, Slot, W};
+use crate::cloth::{Block, ClothGrid, DX, DY, DZ, Layout, MapInline, Slot, W};
 
 /// What stencils are solved together, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -20,7 +20,6 @@
 //! `(M + s K) e = −s K p` is solved by conjugate gradients. Cloth that is soft for its spacing and sub-steps is pushed by `−s K p`
 //! instead, like a grid.
 
-use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::{Vec3A, Vec4};
@@ -29,7 +28,9 @@ use super::{
     creasing::ClothCreasing, mesh_creases::MeshCreases, mesh_matrix::MeshMatrix, patch::frame,
     push::LIMIT,
 };
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, StiffnessFactors, Surface, W, Woven};
+use crate::cloth::{
+    Block, DX, DY, DZ, LANES, Lanes, Layout, MapInline, StiffnessFactors, Surface, W, Woven,
+};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;

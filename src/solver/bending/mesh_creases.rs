@@ -4,14 +4,13 @@
 //! the bending of the mesh. The rest is a force, the gradient of `A D κ·κ₀`. It includes how the frame turns, so that no face
 //! has a resultant or a moment.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{
     creasing::ClothCreasing,
     patch::{Patch, frame},
 };
-use crate::cloth::{Block, Layout, StiffnessFactors, Surface, Woven};
+use crate::cloth::{Block, Layout, MapInline, StiffnessFactors, Surface, Woven};
 
 /// The frame of a patch with its particles at these places.
 fn axes_of(at: &[Vec3; 6]) -> Option<[Vec3; 3]> {

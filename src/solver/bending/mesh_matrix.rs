@@ -1,10 +1,9 @@
 //! The matrix of a mesh's bending energy.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3};
 
 use super::patch::{Patch, RestFace, for_each_row};
-use crate::cloth::{StiffnessFactors, Surface, Woven};
+use crate::cloth::{MapInline, StiffnessFactors, Surface, Woven};
 
 /// K, row by row, and the forces of faces that are curved at rest.
 #[derive(Debug, PartialEq)]
@@ -133,7 +132,7 @@ impl MeshMatrix {
             }
             numbers
         };
-        (0..count).map_inline(row).collect()
+        (0..count).map(row).collect()
     }
 
     /// ½ xᵀ K x of one coordinate (J), by differences, as the forces are.
@@ -143,10 +142,10 @@ impl MeshMatrix {
             let between = |&(other, number): &(u32, f32)| {
                 f64::from(number) * (places[other as usize] - places[row]).powi(2)
             };
-            beside.map_inline(between).sum::<f64>()
+            beside.map(between).sum::<f64>()
         };
         // Each pair is seen from both ends.
-        -(0..places.len()).map_inline(of_row).sum::<f64>() / 4.0
+        -(0..places.len()).map(of_row).sum::<f64>() / 4.0
     }
 }
 

@@ -1,9 +1,8 @@
 //! The curvature of a face, from the faces beside it.
 
-use crate::cloth::MapInline;
 use bevy::math::{DMat3, DVec2, DVec3, Vec3, Vec3A};
 
-use crate::cloth::ByParticle;
+use crate::cloth::{ByParticle, MapInline};
 
 /// Regularisation, as a fraction: edges with nearly the same information about a face's curvature don't make it
 /// infinite.

@@ -16,8 +16,7 @@
 //! are the plate's difference equation of 13 points, whose error is of second order in the spacing. Chains of four directions
 //! would have a Poisson's ratio of a third whatever their rigidities: strips of them are too soft, as their free edges curl.
 
-use crate::cloth::MapInline;
-use crate::cloth::{ClothGrid, Lanes, Layout};
+use crate::cloth::{ClothGrid, Lanes, Layout, MapInline};
 
 /// k (N/m) of a grid's chains and cells.
 #[derive(Debug, Clone)]

@@ -6,9 +6,8 @@
 //! it is stable as long as A is below one.
 
 use super::plate::Plate;
-use crate::cloth::MapInline;
 use crate::{
-    cloth::{Block, LANES, Lanes, W},
+    cloth::{Block, LANES, Lanes, MapInline, W},
     solver::kernels::{EDGE, Kernels, Moments, Stiffness, Vec3Lanes},
 };
 

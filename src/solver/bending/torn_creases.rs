@@ -1,6 +1,5 @@
 //! The creases of a cloth whose faces come apart.
 
-use crate::cloth::MapInline;
 use bevy::math::{DMat2, DVec2, Vec3A};
 
 use super::patch::frame;
@@ -23,14 +22,14 @@ pub(crate) fn creases_of_torn(before: &Surface, after: &Surface, rest: &[f32]) -
 }
 
 fn of_mesh(before: &Surface, after: &Surface, rest: &[f32]) -> Vec<f32> {
-    let [known, faces] = [before, after].map_inline(|of| of.bending_faces().faces());
+    let [known, faces] = [before, after].map(|of| of.bending_faces().faces());
     if rest.len() != OF_FACE * faces.len() || known.len() != faces.len() {
         return Vec::new();
     }
     let mut creases = rest.to_vec();
     for ((known, face), crease) in known.iter().zip(faces).zip(creases.chunks_mut(OF_FACE)) {
-        let was = known.map_inline(|corner| before.origin_of(corner));
-        if was != face.map_inline(|corner| after.origin_of(corner)) {
+        let was = known.map(|corner| before.origin_of(corner));
+        if was != face.map(|corner| after.origin_of(corner)) {
             crease.fill(0.0);
         }
     }
@@ -46,15 +45,9 @@ fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) ->
     let number = |particle: u32, kind: usize| f64::from(rest[3 * particle as usize + kind]);
     let mut creases = Vec::with_capacity(OF_FACE * after.bending_faces().faces().len());
     for face in after.bending_faces().faces() {
-        let corners = face.map_inline(|corner| after.origin_of(corner));
-        let cells = corners.map_inline(|corner| [corner % columns, corner / columns]);
-        let first = |along: usize| {
-            cells
-                .map_inline(|cell| cell[along])
-                .into_iter()
-                .min()
-                .unwrap_or(0)
-        };
+        let corners = face.map(|corner| after.origin_of(corner));
+        let cells = corners.map(|corner| [corner % columns, corner / columns]);
+        let first = |along: usize| cells.map(|cell| cell[along]).into_iter().min().unwrap_or(0);
         let cell = first(1) * columns + first(0);
         // Of the two corners in one column, or in one row.
         let mean = |kind: usize| {
@@ -67,12 +60,11 @@ fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) ->
             DMat2::from_cols_array_2d(&[[mean(0), number(cell, 2)], [number(cell, 2), mean(1)]]);
         let across = (place(cell + 1) - place(cell)).normalize();
         let down = (place(cell + columns) - place(cell)).normalize();
-        let Some([x, y, z]) = frame(corners.map_inline(place)) else {
+        let Some([x, y, z]) = frame(corners.map(place)) else {
             creases.extend([0.0; OF_FACE]);
             continue;
         };
-        let [x, y] =
-            [x, y].map_inline(|axis| DVec2::new(axis.dot(across).into(), axis.dot(down).into()));
+        let [x, y] = [x, y].map(|axis| DVec2::new(axis.dot(across).into(), axis.dot(down).into()));
         let side = f64::from(z.dot(across.cross(down)).signum());
         let bent = [
             x.dot(curvature * x),

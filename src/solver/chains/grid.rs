@@ -1,12 +1,11 @@
 //! The springs of a grid, chain by chain, in one partition or several. A partition consists of blocks side by side for chains
 //! from row to row, and of rows for chains within rows.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
 
 use super::second_pass::{GridSprings, SecondPass};
 use crate::{
-    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
+    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, MapInline, W},
     solver::{
         kernels::{
             Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,

@@ -6,9 +6,8 @@
 //! measured then, and so on, for a few rounds. It is the iteration of Gauss and Seidel by chains (Saad 2003, section 4.1),
 //! for those equations alone that need it.
 
-use crate::cloth::MapInline;
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout},
+    cloth::{Block, LANES, Lanes, Layout, MapInline},
     solver::{
         kernels::{
             Columns, Kernels, Residuals, RowChains, RowScratch, RowSprings, Scratch, SpringBand,

@@ -8,8 +8,9 @@
 //! these per cycle, each on eight lanes: 13 cycles for eight springs, 0.55 ns per spring at 3 GHz.
 
 use super::{barrier::one_block_at_a_time, commit::commit, each::three};
-use crate::cloth::MapInline;
-use crate::cloth::{Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, View, W, X};
+use crate::cloth::{
+    Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, MapInline, View, W, X,
+};
 
 /// x, y and z of the forces on eight particles (N).
 pub(crate) type Force = [Lanes; 3];

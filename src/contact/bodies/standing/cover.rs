@@ -1,10 +1,9 @@
 //! The cloth between a body and the ground that it stands on.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use crate::{
-    cloth::{ClothParticles, Surface},
+    cloth::{ClothParticles, MapInline, Surface},
     contact::{
         candidates::Candidate,
         colliders::{MovingCollider, Nearest},

@@ -1,6 +1,5 @@
 //! Where bodies stand.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
 
 use bevy::math::{Isometry3d, Vec3};
@@ -10,7 +9,7 @@ use super::{
     point::StandingPoint,
 };
 use crate::{
-    cloth::{ClothParticles, LANES, Slot},
+    cloth::{ClothParticles, LANES, MapInline, Slot},
     contact::{
         candidates::ContactBlock,
         colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider, moving_of},

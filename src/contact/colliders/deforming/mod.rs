@@ -1,6 +1,5 @@
 //! Meshes that deform: skinned bodies.
 
-use crate::cloth::MapInline;
 mod skinned;
 mod topology;
 
@@ -16,6 +15,8 @@ use super::{
     triangle::{at, nearest_to_point},
 };
 use topology::NONE;
+
+use crate::cloth::MapInline;
 
 /// A mesh whose vertices move along straight lines in the tick, in its own frame. The outer side of a face is the one from
 /// which its corners run counter-clockwise. Clones share the data. Two are equal if they are of the same

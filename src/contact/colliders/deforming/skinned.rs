@@ -1,12 +1,11 @@
 //! Skinned meshes as colliders.
 
-use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::{Affine3A, Vec3};
 
 use super::{DeformingMesh, Topology};
-use crate::cloth::Skinning;
+use crate::cloth::{MapInline, Skinning};
 #[cfg(feature = "mesh")]
 use crate::{
     cloth::{ClothError, JointWeights, same_places},

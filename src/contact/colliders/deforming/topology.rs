@@ -1,6 +1,5 @@
 //! The faces of a mesh, their neighbours, and a tree over them.
 
-use crate::cloth::MapInline;
 use std::ops::Range;
 
 #[cfg(feature = "mesh")]
@@ -45,7 +44,7 @@ impl Topology {
     /// is inside out is turned. Triangles with fewer than three vertices are left out.
     pub fn new(vertices: &[Vec3], mut triangles: Vec<[u32; 3]>) -> Self {
         triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-        let places = |triangle: &[u32; 3]| triangle.map_inline(|corner| vertices[corner as usize]);
+        let places = |triangle: &[u32; 3]| triangle.map(|corner| vertices[corner as usize]);
         let edges = MeshEdges::of(&triangles);
         if edges.are_closed() && volume(vertices, &triangles) < 0.0 {
             triangles
@@ -112,7 +111,7 @@ impl Topology {
         }
         let corners = || {
             let faces = (0..).zip(&self.triangles);
-            faces.flat_map(|(face, corners)| corners.map_inline(|corner| (corner, face)))
+            faces.flat_map(|(face, corners)| corners.map(|corner| (corner, face)))
         };
         self.around = ByParticle::new(vertices, corners);
     }

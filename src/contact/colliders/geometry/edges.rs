@@ -1,6 +1,5 @@
 //! The sharp edges of a shape: they may pass through a triangle of the cloth whose corners are all outside.
 
-use crate::cloth::MapInline;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 use bevy::math::Vec3;
@@ -9,6 +8,8 @@ use parry3d::{
     partitioning::{Bvh, BvhBuildStrategy, BvhNode},
     query::PointQuery,
 };
+
+use crate::cloth::MapInline;
 
 /// Below this angle (sine), two faces have no edge between them.
 const SHARP: f32 = 1.0e-3;

@@ -1,6 +1,5 @@
 //! Builds a mesh from positions and triangles: welded, oriented and with its edges.
 
-use crate::cloth::MapInline;
 use bevy::math::{DVec3, Vec3};
 use parry3d::shape::{TriMesh, TriMeshFlags};
 
@@ -8,7 +7,7 @@ use super::{
     edges::{MeshEdges, SharpEdge},
     solid::MeshSides,
 };
-use crate::cloth::{ClothError, FARTHEST};
+use crate::cloth::{ClothError, FARTHEST, MapInline};
 
 /// A mesh, its inside, and its sharp edges.
 pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);

@@ -1,6 +1,5 @@
 //! Converts shapes of parry into parts of a geometry.
 
-use crate::cloth::MapInline;
 use std::sync::Arc;
 
 use bevy::math::{Quat, Vec3};
@@ -14,7 +13,7 @@ use super::{
     mesh,
     solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
 };
-use crate::cloth::ClothError;
+use crate::cloth::{ClothError, MapInline};
 
 /// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
 /// most 0.2 % of the radius below.

@@ -6,6 +6,7 @@ mod motion;
 mod response;
 mod scenes;
 mod search;
+mod stopped;
 mod tangled;
 mod thrown;
 
@@ -97,6 +98,8 @@ pub(super) struct Scene {
     pub contact: MutualContact,
     pub settings: ClothSelfCollision,
     pub step: TickStep,
+    /// The work that is left of a tick after its beginning, if it is not that of the number of particles.
+    pub work: Option<usize>,
     pub worst: usize,
 }
 
@@ -112,6 +115,7 @@ impl Scene {
                 damping: 0.005,
                 ..TickStep::default()
             },
+            work: None,
             worst: 0,
         }
     }
@@ -130,6 +134,7 @@ impl Scene {
             if !is_begun {
                 let participants = participants(&mut self.cloths, settings);
                 self.contact.begin(&participants, |_, _| true);
+                self.contact.counts.work = self.work.unwrap_or(self.contact.counts.work);
                 is_begun = true;
             }
             let mut ends = Vec::new();

@@ -1,11 +1,10 @@
 //! Pushes one triangle.
 
-use crate::cloth::MapInline;
 use bevy::math::Vec3;
 
 use super::{ResumePoint, TrianglePush};
 use crate::{
-    cloth::{ClothParticles, Slot},
+    cloth::{ClothParticles, MapInline, Slot},
     contact::{
         colliders::{at, cap},
         friction::{Contact, PushOut},

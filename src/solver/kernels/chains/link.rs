@@ -1,8 +1,7 @@
 //! One spring of a chain, in the system of equations of all springs of that chain.
 
-use crate::cloth::MapInline;
 use crate::{
-    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, View, W, X},
+    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, MapInline, View, W, X},
     solver::kernels::{each::three, step_scale::StepScale},
 };
 
