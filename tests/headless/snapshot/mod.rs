@@ -170,7 +170,7 @@ fn what_is_wrong_with_a_snapshot_is_said() {
         error,
         SnapshotError::Version {
             found: 7,
-            expected: 5
+            expected: 6
         }
     );
     // A particle that there is not: of what is attached, and of what touches.
