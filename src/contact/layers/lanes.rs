@@ -235,10 +235,8 @@ fn near<const N: usize, const M: usize>(
                     continue;
                 }
                 let mut feature = [[Lanes::all(0.0); 3]; N];
-                for corner in 0..N {
-                    for axis in 0..3 {
-                        feature[corner][axis] = Lanes::all(group[corner][axis][l]);
-                    }
+                for (point, eight) in feature.iter_mut().zip(group) {
+                    *point = eight.map_inline(|axis| Lanes::all(axis[l]));
                 }
                 let squares = squares(&feature, others);
                 hits.compared += 1;
