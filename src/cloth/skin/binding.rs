@@ -4,7 +4,7 @@ use bevy::math::{Affine3A, Vec3, Vec3A};
 
 use crate::cloth::surface::JointWeights;
 #[cfg(feature = "mesh")]
-use crate::cloth::{arrays::MapInline, error::ClothError, surface::Surface};
+use crate::cloth::{error::ClothError, surface::Surface};
 
 /// Linear blend skinning of a surface's particles, in the mesh's metres, before any scale.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -155,7 +155,7 @@ fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, ClothE
         });
     }
     let weights = if sum > 0.0 {
-        skin.weights.map_inline(|weight| weight / sum)
+        skin.weights.map(|weight| weight / sum)
     } else {
         [1.0, 0.0, 0.0, 0.0]
     };
@@ -177,10 +177,9 @@ mod tests {
         let places: Vec<Vec3> = (0..40).map(place).collect();
         let triangles = (0..38).map(|first| [first, first + 1, first + 2]).collect();
         let skin = |vertex: u32| JointWeights {
-            joints: [vertex, vertex + 1, vertex * 3, vertex / 3]
-                .map_inline(|joint| (joint % 7) as u16),
+            joints: [vertex, vertex + 1, vertex * 3, vertex / 3].map(|joint| (joint % 7) as u16),
             // Their sum is not 1.
-            weights: [3, 5, 7, 11].map_inline(|prime| (vertex % prime) as f32 * 0.3),
+            weights: [3, 5, 7, 11].map(|prime| (vertex % prime) as f32 * 0.3),
         };
         let mesh = TriangleMesh {
             positions: places.clone(),

@@ -26,8 +26,8 @@
 //!
 //! Patches that begin intersected are left alone until they are apart. With more work than the [limit](work) all cloths that
 //! may touch stop for the rest of the tick, where they were last apart, and it is reported. Nothing is kept apart for some
-//! ticks after too many of these in a row, if any pin moves meanwhile, or if any patches began intersected. Resting layers are [held](mean_pushes) for a few sub-steps, while none can have come
-//! near enough to pass.
+//! ticks after too many of these in a row, if any pin moves meanwhile, or if any patches began intersected. Resting layers
+//! are [held](mean_pushes) for a few sub-steps, while none can have come near enough to pass.
 
 mod bounds;
 mod certificate;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy::math::Vec2;
 
-use crate::cloth::{ClothGrid, Layout, MapInline};
+use crate::cloth::{ClothGrid, Layout};
 
 /// A range of rows or columns on one level.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,9 +112,9 @@ impl GridTree {
                 (part.block, part.lane) = (part.middle % strip, part.middle / strip);
                 part.in_strip = (index as u32).checked_rem(parts_in_strip).unwrap_or(0);
             }
-            let [down, across] = [&mut rows, &mut columns].map_inline(|parts| shorten(parts));
-            let rest_radius = down.map_inline(|down| {
-                across.map_inline(|across| rest_distance(grid.spacing(), across, down, diagonals))
+            let [down, across] = [&mut rows, &mut columns].map(|parts| shorten(parts));
+            let rest_radius = down.map(|down| {
+                across.map(|across| rest_distance(grid.spacing(), across, down, diagonals))
             });
             levels.push(Level {
                 rows,

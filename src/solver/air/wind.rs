@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 
 use crate::{
-    cloth::{ClothParticles, LANES, Layout, MapInline},
+    cloth::{ClothParticles, LANES, Layout},
     solver::kernels::{Vec3Lanes, between},
 };
 
@@ -114,7 +114,7 @@ impl Lattice {
         let high = particles.positions().fold(Vec3::MIN, Vec3::max);
         let size = high - low;
         let cell = size.max_element() / ALONG_SIDE as f32;
-        let cells = size.to_array().map_inline(|side| {
+        let cells = size.to_array().map(|side| {
             let cells = (side / cell).ceil();
             // A cloth without a size is one cell.
             if cells >= 1.0 {
@@ -147,7 +147,7 @@ impl Lattice {
         let cell = Vec3::from(
             per_metre
                 .to_array()
-                .map_inline(|of| if of > 0.0 { 1.0 / of } else { 0.0 }),
+                .map(|of| if of > 0.0 { 1.0 / of } else { 0.0 }),
         );
         (0..=x).flat_map(move |x| {
             (0..=y).flat_map(move |y| {

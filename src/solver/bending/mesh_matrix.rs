@@ -3,7 +3,7 @@
 use bevy::math::{DVec3, Vec3};
 
 use super::patch::{Patch, RestFace, for_each_row};
-use crate::cloth::{MapInline, StiffnessFactors, Surface, Woven};
+use crate::cloth::{StiffnessFactors, Surface, Woven};
 
 /// K, row by row, and the forces of faces that are curved at rest.
 #[derive(Debug, PartialEq)]
@@ -155,13 +155,13 @@ pub(super) fn changed(
     surface: &Surface,
     factors: &StiffnessFactors,
 ) -> Vec<bool> {
-    let [was, is] = [known.surface, surface].map_inline(Surface::bending_faces);
+    let [was, is] = [known.surface, surface].map(Surface::bending_faces);
     if was.faces().len() != is.faces().len() {
         return vec![true; surface.len()];
     }
     let mut is_changed = vec![false; surface.len()];
     for index in 0..is.faces().len() {
-        let [before, after] = [was, is].map_inline(|of| (of.faces()[index], of.beside(index)));
+        let [before, after] = [was, is].map(|of| (of.faces()[index], of.beside(index)));
         let particles = |(face, beside): ([u32; 3], [Option<u32>; 3])| {
             face.into_iter().chain(beside.into_iter().flatten())
         };

@@ -16,7 +16,7 @@
 //! are the plate's difference equation of 13 points, whose error is of second order in the spacing. Chains of four directions
 //! would have a Poisson's ratio of a third whatever their rigidities: strips of them are too soft, as their free edges curl.
 
-use crate::cloth::{ClothGrid, Lanes, Layout, MapInline};
+use crate::cloth::{ClothGrid, Lanes, Layout};
 
 /// k (N/m) of a grid's chains and cells.
 #[derive(Debug, Clone)]
@@ -32,7 +32,7 @@ impl Plate {
     /// Of these flexural rigidities along rows and along columns (N·m).
     pub fn new(grid: &ClothGrid, rigidities: [f32; 2]) -> Self {
         let (wide, high) = (f64::from(grid.spacing().x), f64::from(grid.spacing().y));
-        let [across, down] = rigidities.map_inline(f64::from);
+        let [across, down] = rigidities.map(f64::from);
         Self {
             layout: Layout::new(grid.columns(), grid.rows()),
             across: (across * high / wide.powi(3)) as f32,

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::second_pass::{GridSprings, SecondPass};
 use crate::{
-    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, MapInline, W},
+    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
     solver::{
         kernels::{
             Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,
@@ -57,7 +57,7 @@ impl GridSolver {
         let across = [springs((0, 1), 0), springs((0, 1), 1)];
         let down = springs((1, 0), 0);
         let ripple_stiffness =
-            [&across[1], &down].map_inline(|springs| springs.stiffness() * springs.inverse_rest);
+            [&across[1], &down].map(|springs| springs.stiffness() * springs.inverse_rest);
         let is_elastic = across.iter().chain([&down]).any(SpringBand::is_elastic);
         Self {
             layout,

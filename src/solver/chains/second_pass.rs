@@ -7,7 +7,7 @@
 //! for those equations alone that need it.
 
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, MapInline},
+    cloth::{Block, LANES, Lanes, Layout},
     solver::{
         kernels::{
             Columns, Kernels, Residuals, RowChains, RowScratch, RowSprings, Scratch, SpringBand,
@@ -99,7 +99,7 @@ impl SecondPass {
             rows: Chains::new(rows),
             columns: Chains::new(strip),
             found: vec![Residuals::new(strip)],
-            pulled: [(); 2].map_inline(|()| vec![[0.0; LANES]; multipliers]),
+            pulled: [(); 2].map(|()| vec![[0.0; LANES]; multipliers]),
             calm: 0,
             is_busy: false,
         }
@@ -166,7 +166,7 @@ impl SecondPass {
         let bands = [inner, down];
         for (given, springs) in given.iter_mut().zip(bands) {
             // At a length l of which the part g/r is given, the pull has given g l/r.
-            *given = given.map_inline(|given| {
+            *given = given.map(|given| {
                 let part = (given * springs.inverse_rest).min(MOST_GIVEN);
                 given / (1.0 - part)
             });

@@ -19,11 +19,12 @@ const TICKS: [usize; 2] = [30, 60];
 const FILE: &str = "BEVY_DRAPE_TEST_SNAPSHOT";
 const THREADS: &str = "BEVY_DRAPE_TEST_THREADS";
 
-/// Cloths of every kind, and one so large that several threads share it.
+/// Cloths of every kind, and one so large that several threads share it, in few sub-steps.
 fn all() -> (App, Vec<Entity>) {
     let (mut app, mut cloths) = everything();
     let large = (
         Cloth::new(256, 256, 0.01),
+        ClothSettings::substeps(4),
         Transform::from_xyz(0.0, 0.0, -9.0),
     );
     cloths.push(app.world_mut().spawn(large).id());

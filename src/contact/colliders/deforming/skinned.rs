@@ -5,10 +5,10 @@ use std::sync::Arc;
 use bevy::math::{Affine3A, Vec3};
 
 use super::{DeformingMesh, Topology};
-use crate::cloth::{MapInline, Skinning};
+use crate::cloth::Skinning;
 #[cfg(feature = "mesh")]
 use crate::{
-    cloth::{ClothError, JointWeights, same_places},
+    cloth::{ClothError, JointWeights, MapInline, same_places},
     contact::colliders::geometry::check_triangles,
 };
 

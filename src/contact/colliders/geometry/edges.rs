@@ -9,8 +9,6 @@ use parry3d::{
     query::PointQuery,
 };
 
-use crate::cloth::MapInline;
-
 /// Below this angle (sine), two faces have no edge between them.
 const SHARP: f32 = 1.0e-3;
 
@@ -134,7 +132,7 @@ pub(in crate::contact::colliders) struct MeshEdges(Vec<Side>);
 impl MeshEdges {
     pub fn of(triangles: &[[u32; 3]]) -> Self {
         let sides = triangles.iter().zip(0_u32..).flat_map(|(triangle, face)| {
-            [(0, 1), (1, 2), (2, 0)].map_inline(|(from, to)| {
+            [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
                 let (from, to) = (triangle[from], triangle[to]);
                 Side {
                     vertices: [from.min(to), from.max(to)],
@@ -166,17 +164,14 @@ impl MeshEdges {
         triangles: &[[u32; 3]],
         has_inside: bool,
     ) -> Vec<SharpEdge> {
-        let corners =
-            |face: u32| triangles[face as usize].map_inline(|vertex| vertices[vertex as usize]);
+        let corners = |face: u32| triangles[face as usize].map(|vertex| vertices[vertex as usize]);
         let normal = |face: u32| {
             let [a, b, c] = corners(face);
             (b - a).cross(c - a).normalize_or_zero()
         };
         let is_tip = tips(vertices.len(), triangles, normal);
         let sharp = self.edges().filter_map(|sides| {
-            let ends = sides[0]
-                .vertices
-                .map_inline(|vertex| vertices[vertex as usize]);
+            let ends = sides[0].vertices.map(|vertex| vertices[vertex as usize]);
             let edge = |outward, part| {
                 Some(SharpEdge {
                     ends,
@@ -203,7 +198,7 @@ impl MeshEdges {
                 return edge(Vec3::ZERO, 1.0);
             }
             // At a convex edge, the other face lies behind this one.
-            let beyond = corners(b.face).map_inline(|corner| normals[0].dot(corner - ends[0]));
+            let beyond = corners(b.face).map(|corner| normals[0].dot(corner - ends[0]));
             let sticks_out = beyond.iter().sum::<f32>() < 0.0;
             let outward = (normals[0] + normals[1]).normalize_or_zero();
             let sine = normals[0].distance(normals[1]) / 2.0;

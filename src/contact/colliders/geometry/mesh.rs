@@ -7,7 +7,7 @@ use super::{
     edges::{MeshEdges, SharpEdge},
     solid::MeshSides,
 };
-use crate::cloth::{ClothError, FARTHEST, MapInline};
+use crate::cloth::{ClothError, FARTHEST};
 
 /// A mesh, its inside, and its sharp edges.
 pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
@@ -51,7 +51,7 @@ pub(in crate::contact::colliders) fn check_triangles(
     let area: f32 = triangles
         .iter()
         .map(|triangle| {
-            let [a, b, c] = triangle.map_inline(|corner| vertices[corner as usize]);
+            let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
             (b - a).cross(c - a).length()
         })
         .sum();
@@ -107,7 +107,7 @@ pub(in crate::contact::colliders) fn volume(vertices: &[Vec3], triangles: &[[u32
     let middle = vertices.first().copied().unwrap_or_default().as_dvec3();
     let parts = triangles.iter().map(|triangle| {
         let [a, b, c]: [DVec3; 3] =
-            triangle.map_inline(|corner| vertices[corner as usize].as_dvec3() - middle);
+            triangle.map(|corner| vertices[corner as usize].as_dvec3() - middle);
         a.dot(b.cross(c)) / 6.0
     });
     parts.sum()

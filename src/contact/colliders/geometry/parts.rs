@@ -13,7 +13,7 @@ use super::{
     mesh,
     solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
 };
-use crate::cloth::{ClothError, MapInline};
+use crate::cloth::ClothError;
 
 /// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
 /// most 0.2 % of the radius below.
@@ -132,7 +132,7 @@ impl Parts {
 
     fn add_edges(&mut self, pose: Pose, edges: &[SharpEdge], radius: f32) {
         self.edges.extend(edges.iter().map(|edge| SharpEdge {
-            ends: edge.ends.map_inline(|end| pose.transform_point(end)),
+            ends: edge.ends.map(|end| pose.transform_point(end)),
             outward: pose.rotation * edge.outward,
             radius: edge.radius + radius,
             ..*edge
@@ -293,7 +293,7 @@ fn in_pieces(edges: &[SharpEdge], radius: f32) -> Vec<SharpEdge> {
 /// Turns the triangles of a height field so that their normals point up.
 pub(crate) fn turn_up(vertices: &[Vec3], triangles: &mut [[u32; 3]]) {
     for triangle in triangles {
-        let [a, b, c] = triangle.map_inline(|corner| vertices[corner as usize]);
+        let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
         if (b - a).cross(c - a).y < 0.0 {
             triangle.swap(1, 2);
         }

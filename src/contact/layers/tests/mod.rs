@@ -100,6 +100,8 @@ pub(super) struct Scene {
     pub step: TickStep,
     /// The work that is left of a tick after its beginning, if it is not that of the number of particles.
     pub work: Option<usize>,
+    /// The work that was left of the last tick after its beginning.
+    pub begun: usize,
     pub worst: usize,
 }
 
@@ -116,6 +118,7 @@ impl Scene {
                 ..TickStep::default()
             },
             work: None,
+            begun: 0,
             worst: 0,
         }
     }
@@ -134,7 +137,8 @@ impl Scene {
             if !is_begun {
                 let participants = participants(&mut self.cloths, settings);
                 self.contact.begin(&participants, |_, _| true);
-                self.contact.counts.work = self.work.unwrap_or(self.contact.counts.work);
+                self.begun = self.work.unwrap_or(self.contact.counts.work);
+                self.contact.counts.work = self.begun;
                 is_begun = true;
             }
             let mut ends = Vec::new();
