@@ -195,20 +195,27 @@ fn no_file_is_too_long() {
     held(LONG_FILES, &larger(&HOUSE, 400, |module| &module.lines));
 }
 
-/// Cargo finds no test by itself here: one that is not listed would never run.
+/// Cargo finds no test and no example by itself here: one that is not listed would never be built.
 #[test]
-fn each_test_program_is_listed() {
-    let folder = std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the crate is");
-    let manifest = include_str!("../Cargo.toml");
-    for entry in std::fs::read_dir(folder + "/tests").expect("the folder of tests") {
-        let path = entry.expect("a file").path();
-        let has = |file: &str| path.join(file).exists();
-        let is_file = path.extension().is_some_and(|extension| extension == "rs");
-        if is_file || has("main.rs") && !has("Cargo.toml") {
-            let name = path.file_stem().and_then(|name| name.to_str());
-            let name = name.expect("a name");
-            let listed = format!("[[test]]\nname = \"{name}\"\n");
-            assert!(manifest.contains(&listed), "{name}");
+fn each_test_program_and_example_is_listed() {
+    let root = std::env::var("CARGO_MANIFEST_DIR").expect("cargo says where the crate is");
+    let tests = ("test", "tests", include_str!("../Cargo.toml"));
+    let examples = (
+        "example",
+        "examples",
+        include_str!("../examples/Cargo.toml"),
+    );
+    for (kind, folder, manifest) in [tests, examples] {
+        for entry in std::fs::read_dir(format!("{root}/{folder}")).expect("a folder") {
+            let path = entry.expect("a file").path();
+            let has = |file: &str| path.join(file).exists();
+            let is_file = path.extension().is_some_and(|extension| extension == "rs");
+            if is_file || has("main.rs") && !has("Cargo.toml") {
+                let name = path.file_stem().and_then(|name| name.to_str());
+                let name = name.expect("a name");
+                let listed = format!("[[{kind}]]\nname = \"{name}\"\n");
+                assert!(manifest.contains(&listed), "{name}");
+            }
         }
     }
 }
@@ -217,6 +224,6 @@ fn each_test_program_is_listed() {
 fn pre_releases_are_asked_for_exactly() {
     held(&[], &loose(include_str!("../Cargo.toml")));
     held(&[], &loose(include_str!("../lab/Cargo.toml")));
-    held(&[], &loose(include_str!("../examples/shared/Cargo.toml")));
+    held(&[], &loose(include_str!("../examples/Cargo.toml")));
     held(&[], &loose(include_str!("headless/Cargo.toml")));
 }

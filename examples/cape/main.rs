@@ -38,7 +38,7 @@ mod scene;
 use std::{env, path::Path, process::ExitCode};
 
 use bevy::prelude::*;
-use examples_shared::{report, stage::Shot, start::Example};
+use examples_shared::{ASSETS, report, stage::Shot, start::Example};
 
 fn main() -> ExitCode {
     if env::args().any(|argument| argument == "--write-model") {
@@ -68,9 +68,7 @@ fn main() -> ExitCode {
 }
 
 fn write_model() -> ExitCode {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("assets")
-        .join(scene::HERO);
+    let path = Path::new(ASSETS).join(scene::HERO);
     match model::write(&path) {
         Ok(()) => {
             println!("{}", path.display());

@@ -24,3 +24,6 @@ pub mod window;
 pub mod windy;
 pub mod workshop;
 pub mod woven;
+
+/// The folder of models and scenes.
+pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");

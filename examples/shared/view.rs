@@ -7,6 +7,7 @@ use std::{
 
 use bevy::{
     app::PluginGroupBuilder,
+    asset::AssetPlugin,
     gltf::GltfPlugin,
     log::LogPlugin,
     prelude::*,
@@ -19,6 +20,8 @@ use bevy::{
     winit::WinitPlugin,
 };
 use bevy_drape::prelude::*;
+
+use crate::ASSETS;
 
 /// Says in a child process's environment which view it is to try out.
 const TO_TRY: &str = "BEVY_DRAPE_TRY_VIEW";
@@ -48,7 +51,11 @@ impl View {
         let gltf = GltfPlugin::default()
             .add_custom_vertex_attribute("MAX_DISTANCE", ClothSkin::MAX_DISTANCE)
             .add_custom_vertex_attribute("BACKSTOP", ClothSkin::BACKSTOP);
-        let plugins = DefaultPlugins.set(log).set(gltf);
+        let assets = AssetPlugin {
+            file_path: ASSETS.into(),
+            ..default()
+        };
+        let plugins = DefaultPlugins.set(log).set(gltf).set(assets);
         if self == Self::Window {
             let window = Window {
                 title: format!("bevy_drape: {title}"),
