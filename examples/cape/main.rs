@@ -35,10 +35,10 @@ mod hero;
 mod model;
 mod scene;
 
-use std::{env, path::Path, process::ExitCode};
+use std::{env, process::ExitCode};
 
 use bevy::prelude::*;
-use examples_shared::{ASSETS, report, stage::Shot, start::Example};
+use examples_shared::{report, stage::Shot, start::Example, top};
 
 fn main() -> ExitCode {
     if env::args().any(|argument| argument == "--write-model") {
@@ -68,7 +68,7 @@ fn main() -> ExitCode {
 }
 
 fn write_model() -> ExitCode {
-    let path = Path::new(ASSETS).join(scene::HERO);
+    let path = top().join("assets").join(scene::HERO);
     match model::write(&path) {
         Ok(()) => {
             println!("{}", path.display());

@@ -20,7 +20,7 @@ use std::{
 };
 
 use clap::Parser;
-use examples_shared::pixels::Pixels;
+use examples_shared::{pixels::Pixels, top};
 
 use crate::movie::{FRAME_TICKS, FRAMES, SCENES, TICKS_A_SECOND};
 
@@ -192,10 +192,10 @@ fn main() -> ExitCode {
     code
 }
 
-/// The cargo that runs this, for this package.
+/// The cargo that runs this, for the workspace: for `examples` alone it would build Bevy again, with fewer features.
 fn cargo(what: &str) -> Command {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
+    let manifest = top().join("Cargo.toml");
     let mut command = Command::new(cargo);
     command.arg(what).arg("--manifest-path").arg(manifest);
     command

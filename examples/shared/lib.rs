@@ -3,6 +3,8 @@
 
 #![expect(missing_docs, reason = "names say enough: nothing here is published")]
 
+use std::path::{Path, PathBuf};
+
 pub mod arrows;
 pub mod depth;
 pub mod exact;
@@ -25,5 +27,8 @@ pub mod windy;
 pub mod workshop;
 pub mod woven;
 
-/// The folder of models and scenes.
-pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
+/// The top of the repository. Cargo says at run time where it is, since checkouts may share a target folder.
+pub fn top() -> PathBuf {
+    let package = std::env::var("CARGO_MANIFEST_DIR");
+    Path::new(package.as_deref().unwrap_or(env!("CARGO_MANIFEST_DIR"))).join("..")
+}

@@ -21,7 +21,7 @@ use bevy::{
 };
 use bevy_drape::prelude::*;
 
-use crate::ASSETS;
+use crate::top;
 
 /// Says in a child process's environment which view it is to try out.
 const TO_TRY: &str = "BEVY_DRAPE_TRY_VIEW";
@@ -52,7 +52,7 @@ impl View {
             .add_custom_vertex_attribute("MAX_DISTANCE", ClothSkin::MAX_DISTANCE)
             .add_custom_vertex_attribute("BACKSTOP", ClothSkin::BACKSTOP);
         let assets = AssetPlugin {
-            file_path: ASSETS.into(),
+            file_path: top().join("assets").to_string_lossy().into(),
             ..default()
         };
         let plugins = DefaultPlugins.set(log).set(gltf).set(assets);

@@ -8,7 +8,8 @@ use bevy::math::Vec2;
 
 use super::kernels::Kernels;
 use crate::cloth::{
-    Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, Slot, Surface,
+    Block, ClothMaterial, ClothParticles, Flat, Graph, LANES, Lanes, Layout, MapInline, Slot,
+    Surface,
 };
 
 /// Each particle is tethered to all pins if there are up to this many, else to the nearest.
@@ -258,10 +259,12 @@ impl Tethers {
         };
         anchors.patterns.clear();
         for pattern in self.layers.iter().flat_map(|layer| &layer.patterns) {
-            let at = pattern.map(position);
-            anchors
-                .patterns
-                .push([at.map(|at| at.x), at.map(|at| at.y), at.map(|at| at.z)]);
+            let at = pattern.map_inline(position);
+            anchors.patterns.push([
+                at.map_inline(|at| at.x),
+                at.map_inline(|at| at.y),
+                at.map_inline(|at| at.z),
+            ]);
         }
     }
 

@@ -260,13 +260,12 @@ impl MutualContact {
         self.motion.read(cloths);
         self.motion.measure_all();
         self.motion.measure(cloths);
-        let is_apart = self.keep_apart(cloths, &meets, dt);
+        let is_done = self.keep_apart(cloths, &meets, dt);
         let pushed = self.members.farthest_push();
         self.mean_pushes.pass();
         self.members
             .scatter(cloths, is_pushed, &mut self.mean_pushes);
-        let is_known = self.counts.is_certain || self.counts.work > 0;
-        if !(is_apart && is_known) {
+        if !is_done {
             self.counts.lost += 1;
             self.stop();
             return pushed + held + self.stay(cloths, is_pushed);
@@ -286,8 +285,8 @@ impl MutualContact {
         pushed + held
     }
 
-    /// Pushes apart what touches, and looks for what the pushed particles may touch. Returns whether there was not too
-    /// much work.
+    /// Pushes apart what touches, and looks for what the pushed particles may touch. Returns whether all pairs are certain
+    /// or work is left.
     fn keep_apart(
         &mut self,
         cloths: &[Participant],
@@ -337,7 +336,7 @@ impl MutualContact {
             self.motion.measure_changed(cloths);
             self.last.free = f32::NEG_INFINITY;
         }
-        true
+        self.counts.is_certain || self.counts.work > 0
     }
 
     /// Looks at the patches that have used up what they may. Returns the approach of any two particles before others

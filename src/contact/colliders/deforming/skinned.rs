@@ -8,7 +8,7 @@ use super::{DeformingMesh, Topology};
 use crate::cloth::Skinning;
 #[cfg(feature = "mesh")]
 use crate::{
-    cloth::{ClothError, JointWeights, MapInline, same_places},
+    cloth::{ClothError, JointWeights, same_places},
     contact::colliders::geometry::check_triangles,
 };
 
@@ -39,7 +39,7 @@ impl SkinnedTriangles {
             .iter()
             .map(|&vertex| positions[vertex as usize])
             .collect();
-        let of = |corners: &[u32; 3]| corners.map_inline(|corner| merged[corner as usize]);
+        let of = |corners: &[u32; 3]| corners.map(|corner| merged[corner as usize]);
         let bound = |&vertex: &u32| {
             let vertex = vertex as usize;
             let skin = skin.get(vertex).copied().unwrap_or_default();

@@ -16,7 +16,7 @@ use bevy::math::{Quat, Vec3};
 
 use super::{
     MutualContact, intersections, participant::Participant, settings::ClothSelfCollision,
-    sheet::Sheet,
+    sheet::Sheet, work::Counts,
 };
 use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
@@ -100,7 +100,8 @@ pub(super) struct Scene {
     pub step: TickStep,
     /// The work that is left of a tick after its beginning, if it is not that of the number of particles.
     pub work: Option<usize>,
-    /// The work that was left of the last tick after its beginning.
+    /// The work of the last tick's beginning, and that which was left after it.
+    pub searched: usize,
     pub begun: usize,
     pub worst: usize,
 }
@@ -118,6 +119,7 @@ impl Scene {
                 ..TickStep::default()
             },
             work: None,
+            searched: 0,
             begun: 0,
             worst: 0,
         }
@@ -137,6 +139,8 @@ impl Scene {
             if !is_begun {
                 let participants = participants(&mut self.cloths, settings);
                 self.contact.begin(&participants, |_, _| true);
+                let particles = participants.iter().map(|cloth| cloth.particles.len());
+                self.searched = Counts::new(particles.sum()).work - self.contact.counts.work;
                 self.begun = self.work.unwrap_or(self.contact.counts.work);
                 self.contact.counts.work = self.begun;
                 is_begun = true;

@@ -3,10 +3,7 @@
 use bevy::math::{Quat, Vec3};
 
 use super::{Scene, Sheeted, floor, thrown::Draw, turned};
-use crate::contact::layers::{
-    MOST_STOPPED,
-    work::{Counts, LEAST_WORK},
-};
+use crate::contact::layers::{MOST_STOPPED, work::LEAST_WORK};
 
 /// A grid or an irregular mesh above the floor, on its edge, leaning as drawn.
 fn upright(seed: u32) -> Scene {
@@ -26,10 +23,13 @@ fn tick(scene: &mut Scene) {
 /// A scene at the first touch of its layers.
 fn touching() -> Scene {
     let mut scene = upright(0);
-    while scene.contact.wanted_substeps() == 0 {
+    for _ in 0..150 {
+        if scene.contact.wanted_substeps() > 0 {
+            return scene;
+        }
         tick(&mut scene);
     }
-    scene
+    panic!("its layers never touch")
 }
 
 fn places(scene: &Scene) -> Vec<Vec3> {
@@ -48,19 +48,13 @@ fn cloth_with_too_much_work_does_not_pass() {
     const TICKS: usize = 150;
     for seed in 0..12 {
         let mut free = upright(seed);
-        let particles = free.cloths[0].particles.len();
-        let all = Counts::new(particles).work;
-        let (mut most, mut at_beginning) = (0, 0);
+        let (mut most, mut searched) = (0, 0);
         for _ in 0..TICKS {
             tick(&mut free);
+            assert_eq!(free.contact.lost(), 0, "{seed}");
             most = most.max(free.begun - free.contact.counts.work);
-            at_beginning = at_beginning.max(all - free.begun);
+            searched = searched.max(free.searched);
         }
-        assert!(
-            2 * at_beginning < LEAST_WORK * particles,
-            "{seed}: {at_beginning}"
-        );
-        assert_eq!((free.worst, free.contact.lost()), (0, 0), "{seed}");
         let mut scene = upright(seed);
         scene.work = Some(most / 2);
         let mut stopped = 0;
@@ -68,14 +62,20 @@ fn cloth_with_too_much_work_does_not_pass() {
             tick(&mut scene);
             assert_eq!(scene.contact.ticks_off, 0, "{seed}: let go");
             stopped += u32::from(scene.contact.counts.is_lost);
+            searched = searched.max(scene.searched);
         }
-        assert!(stopped > 0, "{seed}");
-        assert_eq!(scene.worst, 0, "{seed}");
-        assert!(
-            height(&scene) < height(&free) + 0.1,
-            "{seed}: {}",
+        let each = searched / scene.cloths[0].particles.len();
+        println!(
+            "{seed}: stopped {stopped}, {each} a particle, {} {}",
+            height(&free),
             height(&scene)
         );
+        assert!(2 * each < LEAST_WORK, "{seed}: {each}");
+        assert!(stopped > 0, "{seed}");
+        for scene in [&free, &scene] {
+            assert_eq!(scene.worst, 0, "{seed}");
+            assert!(height(scene) < 0.15, "{seed}: {}", height(scene));
+        }
     }
 }
 
