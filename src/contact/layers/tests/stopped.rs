@@ -65,11 +65,6 @@ fn cloth_with_too_much_work_does_not_pass() {
             searched = searched.max(scene.searched);
         }
         let each = searched / scene.cloths[0].particles.len();
-        println!(
-            "{seed}: stopped {stopped}, {each} a particle, {} {}",
-            height(&free),
-            height(&scene)
-        );
         assert!(2 * each < LEAST_WORK, "{seed}: {each}");
         assert!(stopped > 0, "{seed}");
         for scene in [&free, &scene] {
