@@ -39,10 +39,10 @@ use super::{
     frame::ClothFrame,
     naming::Part,
     prepare::{
-        ChangedColliders, ColliderMotion, ColliderTree, Islands, Seams, Teleporting, choose_levels,
-        find_islands, follow_roots, forget_collider, forget_stitches, hold_cloths, let_go,
-        note_enabled, note_removals, prepare_cloths, prepare_colliders, prepare_seams,
-        prepare_wind,
+        ChangedColliders, ColliderMotion, ColliderTree, Islands, Seams, Teleporting,
+        build_torn_ahead, choose_levels, find_islands, follow_roots, forget_collider,
+        forget_stitches, hold_cloths, let_go, note_enabled, note_removals, prepare_cloths,
+        prepare_colliders, prepare_seams, prepare_wind,
     },
     search::{query_collisions, rebuild_hierarchies},
     sets::ClothSystems,
@@ -171,6 +171,10 @@ fn add_resources_and_observers(app: &mut App) {
         .add_observer(forget_collider)
         .add_observer(note_enabled)
         .add_systems(Last, note_removals)
+        .add_systems(
+            Last,
+            build_torn_ahead.run_if(any_with_component::<ClothTears>),
+        )
         .add_systems(Last, log_notices.run_if(Notices::are_there));
     #[cfg(feature = "mesh")]
     app.init_resource::<SharedMeshes>();

@@ -3,7 +3,7 @@
 use bevy::{
     asset::AssetPlugin,
     camera::visibility::VisibilityPlugin,
-    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor},
+    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor, SystemExecutor},
     gizmos::GizmoPlugin,
     mesh::MeshPlugin,
     prelude::*,
@@ -29,12 +29,7 @@ pub fn is_long() -> bool {
 /// An app in which every update is one tick, whose systems run one after the other on this thread: tests that run beside each other
 /// share Bevy's threads, and would wait for each other's systems. Those that draw run as in a game.
 pub fn app() -> App {
-    let mut app = with_plugins(DrapePlugins::default());
-    let mut schedules = app.world_mut().resource_mut::<Schedules>();
-    for (_, schedule) in schedules.iter_mut() {
-        schedule.set_executor(SingleThreadedExecutor::new());
-    }
-    app
+    with_plugins(DrapePlugins::default())
 }
 
 /// The same with all that draws, short of a renderer, and the cloth in `schedule`.
@@ -98,12 +93,21 @@ pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
             ),
         )
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    run_systems_by(&mut app, SingleThreadedExecutor::new);
     app.finish();
     app.cleanup();
     // The first update of an app has no time in it.
     app.update();
     assert_eq!(app.world().resource::<Time<Fixed>>().elapsed_secs(), 0.0);
     app
+}
+
+/// Has other executors run its systems. Tests run side by side: threads of their own would wait for each other.
+pub fn run_systems_by<E: SystemExecutor + 'static>(app: &mut App, executor: impl Fn() -> E) {
+    let mut schedules = app.world_mut().resource_mut::<Schedules>();
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(executor());
+    }
 }
 
 /// Runs this many ticks.

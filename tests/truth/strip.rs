@@ -48,10 +48,12 @@ fn elongation(width: f32, high: u32, jitter: f32, material: &ClothMaterial) -> f
 }
 
 /// A strip of compliance α gives α ρ g H²/2 to a few per cent, the more irregular its triangles are the less exactly, with nothing but springs along its edges
-/// and with what resists its bending besides.
+/// and with what resists its bending besides. The finest take most of the time: CI sets `BEVY_DRAPE_LONG`.
 #[test]
 fn irregular_strips_give_as_the_material_says() {
     let compliance = 2.0e-2;
+    let is_long = std::env::var_os("BEVY_DRAPE_LONG").is_some();
+    let highs: &[u32] = if is_long { &[16, 32, 48] } else { &[16, 32] };
     for (name, [shear, bend]) in [
         ("edges alone", [f32::INFINITY, 0.0]),
         ("cotton", [10.0 * compliance, 6.0e-6]),
@@ -67,7 +69,7 @@ fn irregular_strips_give_as_the_material_says() {
         let (mut least, mut most) = (f32::MAX, f32::MIN);
         for (jitter, allowed) in [(0.1, 0.03), (0.2, 0.04), (0.3, 0.055)] {
             for width in [0.5, 1.0] {
-                for high in [16, 32, 48] {
+                for &high in highs {
                     let ratio = elongation(width, high, jitter, &material) / exact;
                     println!("{name}, {width} m wide, {high} high, jitter {jitter}: {ratio:.3}");
                     assert!(

@@ -61,6 +61,7 @@ impl BuildInputs<'_> {
             recipe: recipe.clone(),
             material: *self.material,
             map: self.map.map(|(map, _)| map.clone()),
+            before: None,
         }
     }
 

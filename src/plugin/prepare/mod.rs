@@ -48,4 +48,5 @@ pub(crate) use seams::{Seams, forget_stitches, prepare_seams};
 pub(crate) use source::Skins;
 #[cfg(feature = "mesh")]
 pub(crate) use source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
+pub(crate) use tears::build_torn_ahead;
 pub(crate) use wind::prepare_wind;

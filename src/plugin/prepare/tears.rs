@@ -1,19 +1,62 @@
 //! Tears cloths that are simulated already.
 
-use bevy::{ecs::change_detection::Mut, math::Vec3};
+use bevy::{
+    ecs::{
+        change_detection::Mut,
+        query::Changed,
+        system::{Query, ResMut},
+    },
+    math::Vec3,
+};
 
 use super::{
     build_inputs::{Build, BuildInputs},
     follow::follow_masses,
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, ClothTears, MaterialFactors, Surface},
+    cloth::{
+        ClothError, ClothMaterial, ClothMaterialMap, ClothParticles, ClothTears, MaterialFactors,
+        Surface,
+    },
     plugin::{
         authoring::Attached,
-        state::{ClothBuilt, ClothState, Recipe, SharedParts},
+        state::{BuildRequest, ClothBuilt, ClothState, Recipe, SharedParts},
     },
     solver::creases_of_torn,
 };
+
+/// Begins to build what was torn since the tick began: until the next tick there is time for it.
+pub(crate) fn build_torn_ahead(
+    cloths: Query<
+        (
+            &ClothTears,
+            &ClothBuilt,
+            Option<&ClothMaterial>,
+            Option<&ClothMaterialMap>,
+        ),
+        Changed<ClothTears>,
+    >,
+    mut parts: ResMut<SharedParts>,
+) {
+    for (tears, built, material, map) in &cloths {
+        let Some(known) = &built.shared.recipe else {
+            continue;
+        };
+        if tears.is_empty() || *tears == known.tears {
+            continue;
+        }
+        parts.build_ahead(BuildRequest {
+            recipe: Recipe {
+                tears: tears.clone(),
+                as_mesh: false,
+                ..known.clone()
+            },
+            material: material.copied().unwrap_or_default(),
+            map: map.cloned(),
+            before: Some(built.shared.clone()),
+        });
+    }
+}
 
 /// Takes over other tears, or the change of a grid to a mesh and back. Particles keep their places, motion and indices, and new ones follow.
 ///
@@ -35,6 +78,8 @@ pub(super) fn follow_tears(
         ..known.clone()
     };
     let before = built.surface().clone();
+    // The known parts don't keep it.
+    let _kept_alive = parts.built_ahead(&recipe)?;
     let mut factors = MaterialFactors::default();
     let of = |surface: &Surface| {
         factors = wanted.factors(surface)?;

@@ -98,6 +98,11 @@ impl Shared {
             .get_or_init(|| Arc::new(Sheet::new(&self.surface, &self.tree)))
     }
 
+    /// Whether contact of cloth with cloth has needed its sheet.
+    pub fn has_sheet(&self) -> bool {
+        self.sheet.get().is_some()
+    }
+
     /// The skinning of its particles by joints, if it has been made.
     pub fn known_skinning(&self) -> Option<&Skinning> {
         self.skinning.get().map(Arc::as_ref)

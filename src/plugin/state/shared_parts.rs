@@ -84,6 +84,24 @@ impl SharedParts {
         Err(ClothError::MeshLoading)
     }
 
+    /// Begins to build in the background what a cloth needs in its next tick, of parts `before` with other tears.
+    pub fn build_ahead(&mut self, request: BuildRequest) {
+        let is_known = self.builds.builds(&request.recipe);
+        let alike = self.alike(&request.recipe);
+        if !is_known && alike.is_empty() {
+            self.builds.begin(request, TriangleMesh::default(), alike);
+        }
+    }
+
+    /// The shared data of a recipe that is [built ahead](Self::build_ahead), to be kept until [`get`](Self::get) finds it.
+    ///
+    /// # Errors
+    /// Those of the surface, its grain, tears and map.
+    pub fn built_ahead(&mut self, recipe: &Recipe) -> Result<Option<Arc<Shared>>, ClothError> {
+        let built = self.builds.finish(recipe)?;
+        Ok(built.map(|built| self.keep(built)))
+    }
+
     /// All that is made of a recipe.
     fn alike(&self, recipe: &Recipe) -> Vec<Arc<Shared>> {
         let all = self.known.iter().filter_map(Weak::upgrade);

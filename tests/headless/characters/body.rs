@@ -69,7 +69,7 @@ fn no_arm_passes_through_what_it_wears() {
             let seconds = (count as f32 * TICK - 0.5).max(0.0);
             bend(&mut app, &arm, axis, angle(MOST, speed, seconds));
             tick(&mut app, 1);
-            if count % 8 == 0 {
+            if count % 16 == 0 {
                 let inside = inside(&app, &arm, cloth);
                 assert_eq!(
                     inside, 0,

@@ -63,15 +63,16 @@ fn forget_messages(app: &mut App) {
     messages::<ClothTouchStopped>(app);
 }
 
-/// Saved at some ticks, and continued for up to 600: in the same app, put back there afterwards, and in one that has just
-/// begun, from a file.
+/// Saved at some ticks, and continued for up to 600, where tests run at their full length: in the same app, put back there
+/// afterwards, and in one that has just begun, from a file.
 #[test]
 fn what_is_restored_goes_on_to_the_last_bit() {
-    const SAVED: [(usize, usize); 4] = [(1, 600), (40, 100), (96, 100), (330, 200)];
+    let longest = if is_long() { 600 } else { 150 };
+    let all = [(1, longest), (40, 100), (96, 100), (330, 200)];
     let (mut app, cloths) = everything();
     let (mut saved, mut seen) = (Vec::new(), Vec::new());
     for number in 0..=600 {
-        if SAVED.iter().any(|(start, _)| *start == number) {
+        if all.iter().any(|(start, _)| *start == number) {
             let clock = *app.world().resource::<Clock>();
             saved.push((ClothWorldSnapshot::of(app.world_mut()), clock));
         }
@@ -83,7 +84,7 @@ fn what_is_restored_goes_on_to_the_last_bit() {
     let woke = !seen[600].cloths[1].2;
     assert!(slept && woke, "asleep on a ball {slept}, woken {woke}");
     assert!(seen.iter().any(|seen| !seen.ended.is_empty()));
-    for ((start, ticks), (saved, clock)) in SAVED.into_iter().zip(saved) {
+    for ((start, ticks), (saved, clock)) in all.into_iter().zip(saved) {
         let expected = &seen[start..start + ticks];
         saved.restore(app.world_mut()).expect("the same world");
         app.insert_resource(clock);
