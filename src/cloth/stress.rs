@@ -5,17 +5,22 @@ use bevy::math::Vec3;
 use super::surface::Surface;
 use crate::cloth::arrays::MapInline;
 
-/// Number of times that stresses are shared with neighbours: a patch of two rings of faces.
-const RINGS: usize = 2;
+/// Number of times that stresses are shared with neighbours: a patch of so many rings of faces.
+const RINGS: usize = 4;
+/// The same at the end of a tear, where the stress is large in a small place.
+const RINGS_AT_TIP: usize = 2;
 
 /// The stress around each particle, times the area of its patch (N m), and that area (m²).
 ///
 /// The force T of a spring with the length L₀ at rest, in direction d, makes a stress `½ T L₀ d dᵀ` over the areas of its ends at rest (the virial). In a mesh of
-/// springs, edges side by side bear loads that differ by a half and more. Their mean over two rings of faces differs by a tenth to a fifth.
+/// springs, edges side by side bear loads that differ by a half and more. Their mean over two rings of faces differs by up to an eighth, over
+/// four by some 5 %.
 /// Tensions are those that the solver applied: they balance, where stretches have errors of a sub-step.
 #[derive(Debug, Default)]
 pub(super) struct Stress {
     around: Vec<Patch>,
+    /// Of the smaller patch.
+    at_tip: Vec<Patch>,
     before: Vec<Patch>,
 }
 
@@ -32,7 +37,11 @@ impl Stress {
         surface: &Surface,
         places: &[Vec3],
     ) {
-        let Self { around, before } = self;
+        let Self {
+            around,
+            at_tip,
+            before,
+        } = self;
         around.clear();
         let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
         around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
@@ -46,7 +55,10 @@ impl Stress {
                 *sheared += half * direction * Vec3::new(direction.y, direction.z, direction.x);
             }
         });
-        for _ in 0..RINGS {
+        for ring in 0..RINGS {
+            if ring == RINGS_AT_TIP {
+                at_tip.clone_from(around);
+            }
             before.clone_from(around);
             for (particle, patch) in around.iter_mut().enumerate() {
                 for (beside, _) in surface.graph().of(particle as u32) {
@@ -58,12 +70,17 @@ impl Stress {
     }
 
     /// The force along an edge, over the width of the cloth that bears it (N/m).
-    pub fn along(&self, ends: [u32; 2], places: &[Vec3]) -> f32 {
+    pub fn along(&self, ends: [u32; 2], is_at_tip: bool, places: &[Vec3]) -> f32 {
+        let patches = if is_at_tip {
+            &self.at_tip
+        } else {
+            &self.around
+        };
         let [from, to] = ends.map_inline(|end| places[end as usize]);
         let d = (to - from).normalize_or_zero();
         let mixed = 2.0 * d * Vec3::new(d.y, d.z, d.x);
         let of = |end: u32| {
-            let Patch(straight, sheared, area) = self.around[end as usize];
+            let Patch(straight, sheared, area) = patches[end as usize];
             ((d * d).dot(straight) + mixed.dot(sheared)) / area
         };
         (of(ends[0]) + of(ends[1])) / 2.0
@@ -84,7 +101,7 @@ mod tests {
             shear_compliance: f32::INFINITY,
             ..ClothMaterial::COTTON
         };
-        let side = 12_u32;
+        let side = 16_u32;
         // Equilateral triangles.
         let place = |index: u32| {
             let (row, column) = (index / side, index % side);
@@ -120,7 +137,7 @@ mod tests {
             stress.find(tensions, &surface, &moved);
             // Springs of all directions have a Poisson's ratio of a third: E h ⁄ (1 − ν²) (ε₁ + ν ε₂), with E h = 1 ⁄ compliance.
             let truth = (stretch.x + stretch.y / 3.0) / (8.0 / 9.0) / material.stretch_compliance;
-            let middle = Vec3::new(0.6, 0.5, 0.0);
+            let middle = Vec3::new(0.8, 0.65, 0.0);
             let rest = surface.rest_positions();
             let near = (0..surface.len() as u32).min_by(|a, b| {
                 let far = |of: u32| rest[of as usize].distance(middle);
@@ -132,7 +149,7 @@ mod tests {
             for beside in beside {
                 let d = (rest[beside as usize] - rest[near as usize]).normalize();
                 if d.x.abs() > 0.999 {
-                    let found = stress.along([near, beside], &moved);
+                    let found = stress.along([near, beside], false, &moved);
                     checked += 1;
                     // Lengths, areas and directions are each off by a part of the stretch, 0.01.
                     assert!(

@@ -138,13 +138,17 @@ impl TearSearch {
     ) -> Vec<[u32; 2]> {
         self.places.clear();
         self.places.extend(particles.positions());
-        self.find_overloaded(strength, surface, tensions);
+        self.find_stretched(strength, surface);
         if self.overloaded.is_empty() {
             return Vec::new();
         }
+        let is_tip = tips(surface, tears);
+        // Edges of an irregular mesh are stretched unevenly, and so are those that cross a knee.
+        if surface.rest_grid().is_none() || strength.material.stiffening.is_some() {
+            self.keep_loaded(strength, surface, &is_tip, tensions);
+        }
         self.overloaded
             .sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let is_tip = tips(surface, tears);
         let pieces = surface.graph().pieces_of();
         let splits: Vec<(bool, u32, Vec<[u32; 2]>)> = (self.overloaded.iter())
             .filter_map(|(_, ends, _)| split(*ends, surface, particles, &is_tip))
@@ -169,16 +173,10 @@ impl TearSearch {
         torn
     }
 
-    fn find_overloaded(
-        &mut self,
-        strength: Strength,
-        surface: &Surface,
-        tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
-    ) {
+    /// Finds the edges that are stretched too far.
+    fn find_stretched(&mut self, strength: Strength, surface: &Surface) {
         let Self {
-            places,
-            overloaded,
-            stress,
+            places, overloaded, ..
         } = self;
         overloaded.clear();
         surface.for_each_thread(|ends, rest_length, along_warp| {
@@ -189,16 +187,28 @@ impl TearSearch {
                 overloaded.push((stretch / borne, ends, along_warp));
             }
         });
-        // Edges of an irregular mesh are stretched unevenly, and so are those that cross a knee: the load of the patch around counts, too.
-        let is_uneven = surface.rest_grid().is_none() || strength.material.stiffening.is_some();
-        if is_uneven && !overloaded.is_empty() {
-            stress.find(tensions, surface, places);
-            overloaded.retain_mut(|(load, ends, along_warp)| {
-                let borne = strength.load(*along_warp);
-                *load = load.min(stress.along(*ends, places) / borne);
-                *load > 1.0
-            });
-        }
+    }
+
+    /// Keeps those of them whose patch bears too much, too.
+    fn keep_loaded(
+        &mut self,
+        strength: Strength,
+        surface: &Surface,
+        is_tip: &[bool],
+        tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
+    ) {
+        let Self {
+            places,
+            overloaded,
+            stress,
+        } = self;
+        stress.find(tensions, surface, places);
+        overloaded.retain_mut(|(load, ends, along_warp)| {
+            let borne = strength.load(*along_warp);
+            let is_at_tip = ends.iter().any(|end| is_tip[*end as usize]);
+            *load = load.min(stress.along(*ends, is_at_tip, places) / borne);
+            *load > 1.0
+        });
     }
 }
 

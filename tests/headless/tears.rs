@@ -353,24 +353,35 @@ fn a_map_leaves_the_strength_alone() {
     }
 }
 
-/// An irregular mesh that a weight hangs from tears at about its strength, while gravity grows until it is in two. At rest a patch of two rings of faces bears
-/// up to a fifth more or less than the mean, see `cloth/stress.rs`; what the solver leaves in default sub-steps is a twentieth.
+/// Irregular meshes that a weight hangs from tear at about their strength, while gravity grows slowly until they are in two. At rest a
+/// patch of four rings of faces bears some 5 % more or less than the mean, see `cloth/stress.rs`. The weight has a hundred times the
+/// density of the rest: default sub-steps, 4 to 9, share its load less evenly.
 #[test]
 fn a_mesh_tears_at_about_its_strength() {
     let material = ClothMaterial {
         stretch_compliance: 5.0e-4,
         shear_compliance: 1.0e-2,
-        damping: 1.0,
+        damping: 0.9,
         ..ClothMaterial::COTTON
     };
     let strength = 100.0;
-    for (spacing, jitter) in [
-        (0.1, 0.15),
-        (0.1, 0.3),
-        (0.05, 0.15),
-        (0.05, 0.3),
-        (0.025, 0.3),
+    let many = ClothSettings::substeps(100);
+    for (spacing, jitter, settings, allowed) in [
+        (0.1, 0.15, default(), 0.25),
+        (0.1, 0.15, many, 0.1),
+        (0.1, 0.3, default(), 0.25),
+        (0.1, 0.3, many, 0.1),
+        (0.05, 0.15, default(), 0.25),
+        (0.05, 0.15, many, 0.1),
+        (0.05, 0.3, default(), 0.25),
+        (0.05, 0.3, many, 0.1),
+        (0.025, 0.3, default(), 0.25),
+        (0.025, 0.3, many, 0.1),
     ] {
+        // It takes as long as all the others.
+        if spacing < 0.05 && settings == many && !is_long() {
+            continue;
+        }
         let strip = irregular(0.4, 1.0, spacing, jitter);
         let weight = ClothPaint::at_rest(|place| if place.y < -0.89 { 99.0 } else { 0.0 });
         let mut app = app();
@@ -379,6 +390,7 @@ fn a_mesh_tears_at_about_its_strength() {
             Cloth::triangles(strip.positions, strip.triangles).flat(),
             top(),
             material,
+            settings,
             ClothMaterialMap {
                 density: ClothFactor::added(weight),
                 ..default()
@@ -388,27 +400,38 @@ fn a_mesh_tears_at_about_its_strength() {
         let cloth = app.world_mut().spawn(parts).id();
         tick(&mut app, 1);
         let mass = motion(&app, cloth).0 as f32;
-        let load = |gravity: f32| mass * gravity / 0.4;
         let most = strength * 0.4 / mass;
         let (mut gravity, mut begins) = (0.0, None);
         while surface(&app, cloth).pieces() < 2 && gravity < 1.5 * most {
             gravity += 1.0e-3 * most;
             app.insert_resource(ClothGravity(Vec3::NEG_Y * gravity));
             tick(&mut app, 1);
-            if begins.is_none() && !tears(&app, cloth).is_empty() {
-                begins = Some(load(gravity) / strength);
+            if begins.is_none()
+                && let Some([end, _]) = tears(&app, cloth).edges().first()
+            {
+                begins = Some(mass_below(&app, cloth, *end) * gravity / 0.4 / strength);
             }
         }
-        let (begins, apart) = (begins.unwrap_or(f32::MAX), load(gravity) / strength);
+        let (begins, apart) = (begins.unwrap_or(f32::MAX), gravity / most);
         println!(
-            "{}, moved by {jitter} spacings: tears at {:.1} % of its strength, is in two at {:.1} %",
+            "{}, moved by {jitter} spacings, {} sub-steps: tears at {:.1} % of its strength, is in two at {:.1} %",
             surface(&app, cloth),
+            stats(&app, cloth).substeps,
             100.0 * begins,
             100.0 * apart
         );
-        assert!((begins - 1.0).abs() < 0.25, "{begins}");
-        assert!(apart < 1.4, "{apart}");
+        assert!((begins - 1.0).abs() < allowed, "{begins}");
+        assert!(apart < 1.2, "{apart}");
     }
+}
+
+/// The mass of what lies lower at rest than a particle (kg).
+fn mass_below(app: &App, cloth: Entity, particle: u32) -> f32 {
+    let (rest, particles) = (surface(app, cloth).rest_positions(), particles(app, cloth));
+    let height = rest[particle as usize].y;
+    let below = (0..rest.len()).filter(|index| rest[*index].y < height);
+    let weights = below.filter_map(|index| particles.inverse_mass(index));
+    weights.map(f32::recip).sum()
 }
 
 /// A slit in cloth whose threads all bear too much runs on at its two ends alone, by an edge each in a tick. The sides of it tear no

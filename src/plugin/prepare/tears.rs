@@ -1,5 +1,7 @@
 //! Tears cloths that are simulated already.
 
+use std::mem;
+
 use bevy::{
     ecs::{
         change_detection::Mut,
@@ -7,6 +9,7 @@ use bevy::{
         system::{Query, ResMut},
     },
     math::Vec3,
+    tasks::{AsyncComputeTaskPool, TaskPool},
 };
 
 use super::{
@@ -106,9 +109,13 @@ pub(super) fn follow_tears(
     hold_parts(surface, &parents, state);
     state.pose.take_parts(&parents);
     state.creases = creases_of_torn(&before, surface, &state.creases);
-    built.solver = shared.solver.clone();
+    let solver = mem::replace(&mut built.solver, shared.solver.clone());
     built.forget_tethers();
-    built.shared = shared;
+    let old = (solver, mem::replace(&mut built.shared, shared));
+    // To free their memory takes long.
+    AsyncComputeTaskPool::get_or_init(TaskPool::default)
+        .spawn(async move { drop(old) })
+        .detach();
     if let Some(from) = &mut built.from {
         from.torn = wanted.torn();
         from.factors = factors;
