@@ -34,7 +34,7 @@ pub fn build(app: &mut App) {
     ]))
     .insert_resource(ClothWind::gusty(Vec3::new(0.3, 0.0, 0.7)))
     .add_systems(Startup, (spawn_bar, spawn_banner, spawn_sword))
-    .add_systems(FixedUpdate, swing.before(ClothSystems::Prepare))
+    .add_systems(FixedUpdate, swing.after(ClothSystems::WriteBack))
     .add_systems(
         Update,
         (scratch, press_keys).run_if(resource_exists::<ButtonInput<KeyCode>>),

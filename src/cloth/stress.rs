@@ -149,16 +149,18 @@ mod tests {
             for beside in beside {
                 let d = (rest[beside as usize] - rest[near as usize]).normalize();
                 if d.x.abs() > 0.999 {
-                    let found = stress.along([near, beside], false, &moved);
-                    checked += 1;
-                    // Lengths, areas and directions are each off by a part of the stretch, 0.01.
-                    assert!(
-                        (found / truth - 1.0).abs() < 0.04,
-                        "{found} N/m, {truth} N/m"
-                    );
+                    for is_at_tip in [false, true] {
+                        let found = stress.along([near, beside], is_at_tip, &moved);
+                        checked += 1;
+                        // Lengths, areas and directions are each off by a part of the stretch, 0.01.
+                        assert!(
+                            (found / truth - 1.0).abs() < 0.04,
+                            "{found} N/m, {truth} N/m"
+                        );
+                    }
                 }
             }
-            assert_eq!(checked, 2);
+            assert_eq!(checked, 4);
         }
     }
 }

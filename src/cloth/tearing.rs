@@ -16,7 +16,8 @@ use crate::cloth::arrays::MapInline;
 /// across it from tick to tick, an edge at a time.
 ///
 /// The load of a thread is that at which its material is stretched as far (N/m, the force on a strip over its width). On a mesh
-/// it is also no more than that of the patch around, by the forces that its springs apply. A
+/// it is also no more than that of the patch around, of four rings of faces, by the forces that its springs apply. At the end of a tear,
+/// the patch has two rings. A
 /// [map](crate::cloth::ClothMaterialMap) of stretch changes the stretch, not the strength. So the
 /// cloth needs a compliance: none of [`ClothMaterial`]'s presets for fabrics is rigid. Beside a pin a coarse cloth is
 /// stretched more than it should be, see [`ClothSettings`](crate::solver::ClothSettings); that counts as load, too.
@@ -206,8 +207,10 @@ impl TearSearch {
         overloaded.retain_mut(|(load, ends, along_warp)| {
             let borne = strength.load(*along_warp);
             let is_at_tip = ends.iter().any(|end| is_tip[*end as usize]);
-            *load = load.min(stress.along(*ends, is_at_tip, places) / borne);
-            *load > 1.0
+            let of_patch = stress.along(*ends, is_at_tip, places) / borne;
+            *load = load.min(of_patch);
+            // False for NaN.
+            of_patch > 1.0
         });
     }
 }

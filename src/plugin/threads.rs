@@ -11,12 +11,23 @@ pub(crate) fn threads() -> usize {
     (pool + 1).min(available_parallelism())
 }
 
-/// Runs two functions at the same time, where Bevy has threads.
+/// The threads that do a piece of work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Threads {
+    /// Those of Bevy's compute pool. Who waits for them runs other tasks of the pool meanwhile: whole systems, too.
+    Compute,
+    /// The one that asks. Work that a tick may wait for takes no other: the system that waits could be what it runs meanwhile.
+    This,
+}
+
+/// Runs two functions, at the same time if there are threads for it.
 pub(crate) fn join<A: Send + 'static, B>(
+    threads: Threads,
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B,
 ) -> (A, B) {
-    let Some(pool) = ComputeTaskPool::try_get() else {
+    let pool = ComputeTaskPool::try_get().filter(|_| threads == Threads::Compute);
+    let Some(pool) = pool else {
         return (one(), other());
     };
     let mut of_other = None;

@@ -5,7 +5,7 @@
 
 use std::{fs, time::Instant};
 
-use bevy::{ecs::schedule::MultiThreadedExecutor, prelude::*};
+use bevy::prelude::*;
 use bevy_drape::prelude::*;
 
 use crate::support::*;
@@ -16,8 +16,7 @@ const TICKS_A_SECOND: usize = 64;
 /// Flags, curtains with a ball that swings into them, sheets that touch themselves, and balloons, in gusts.
 fn storm() -> App {
     let mut app = app_that_draws(FixedUpdate);
-    // As in a game.
-    run_systems_by(&mut app, MultiThreadedExecutor::new);
+    run_on_all_threads(&mut app);
     app.insert_resource(ClothWind {
         velocity: Vec3::new(14.0, 0.0, 6.0),
         gusts: 0.5,

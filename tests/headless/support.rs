@@ -3,7 +3,7 @@
 use bevy::{
     asset::AssetPlugin,
     camera::visibility::VisibilityPlugin,
-    ecs::schedule::{ScheduleLabel, SingleThreadedExecutor, SystemExecutor},
+    ecs::schedule::{MultiThreadedExecutor, ScheduleLabel, SingleThreadedExecutor},
     gizmos::GizmoPlugin,
     mesh::MeshPlugin,
     prelude::*,
@@ -27,7 +27,7 @@ pub fn is_long() -> bool {
 }
 
 /// An app in which every update is one tick, whose systems run one after the other on this thread: tests that run beside each other
-/// share Bevy's threads, and would wait for each other's systems. Those that draw run as in a game.
+/// share Bevy's threads, and would wait for each other's systems.
 pub fn app() -> App {
     with_plugins(DrapePlugins::default())
 }
@@ -93,21 +93,23 @@ pub fn with_plugins<M>(plugins: impl bevy::app::Plugins<M>) -> App {
             ),
         )
         .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
-    run_systems_by(&mut app, SingleThreadedExecutor::new);
     app.finish();
     app.cleanup();
+    let mut schedules = app.world_mut().resource_mut::<Schedules>();
+    for (_, schedule) in schedules.iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
     // The first update of an app has no time in it.
     app.update();
     assert_eq!(app.world().resource::<Time<Fixed>>().elapsed_secs(), 0.0);
     app
 }
 
-/// Has other executors run its systems. Tests run side by side: threads of their own would wait for each other.
-pub fn run_systems_by<E: SystemExecutor + 'static>(app: &mut App, executor: impl Fn() -> E) {
-    let mut schedules = app.world_mut().resource_mut::<Schedules>();
-    for (_, schedule) in schedules.iter_mut() {
-        schedule.set_executor(executor());
-    }
+/// Has its cloth systems run on Bevy's threads, as in a game.
+pub fn run_on_all_threads(app: &mut App) {
+    app.edit_schedule(FixedUpdate, |schedule| {
+        schedule.set_executor(MultiThreadedExecutor::new());
+    });
 }
 
 /// Runs this many ticks.

@@ -5,6 +5,7 @@ use std::mem;
 use bevy::{
     ecs::{
         change_detection::Mut,
+        entity::Entity,
         query::Changed,
         system::{Query, ResMut},
     },
@@ -32,6 +33,7 @@ use crate::{
 pub(crate) fn build_torn_ahead(
     cloths: Query<
         (
+            Entity,
             &ClothTears,
             &ClothBuilt,
             Option<&ClothMaterial>,
@@ -41,23 +43,27 @@ pub(crate) fn build_torn_ahead(
     >,
     mut parts: ResMut<SharedParts>,
 ) {
-    for (tears, built, material, map) in &cloths {
+    for (cloth, tears, built, material, map) in &cloths {
+        let material = material.copied().unwrap_or_default();
         let Some(known) = &built.shared.recipe else {
             continue;
         };
-        if tears.is_empty() || *tears == known.tears {
+        // What is mended may be a grid again.
+        if tears.is_empty() || *tears == known.tears || material.validate().is_err() {
             continue;
         }
-        parts.build_ahead(BuildRequest {
-            recipe: Recipe {
-                tears: tears.clone(),
-                as_mesh: false,
-                ..known.clone()
-            },
-            material: material.copied().unwrap_or_default(),
+        let recipe = Recipe {
+            tears: tears.clone(),
+            as_mesh: false,
+            ..known.clone()
+        };
+        let request = BuildRequest {
+            recipe,
+            material,
             map: map.cloned(),
             before: Some(built.shared.clone()),
-        });
+        };
+        parts.build_ahead(cloth, request);
     }
 }
 
@@ -82,7 +88,7 @@ pub(super) fn follow_tears(
     };
     let before = built.surface().clone();
     // The known parts don't keep it.
-    let _kept_alive = parts.built_ahead(&recipe)?;
+    let _kept_alive = parts.built_ahead(&recipe);
     let mut factors = MaterialFactors::default();
     let of = |surface: &Surface| {
         factors = wanted.factors(surface)?;

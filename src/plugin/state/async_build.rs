@@ -5,11 +5,15 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use bevy::tasks::{AsyncComputeTaskPool, Task, TaskPool, block_on};
+use bevy::{
+    ecs::entity::Entity,
+    tasks::{AsyncComputeTaskPool, Task, TaskPool, block_on},
+};
 
 use super::{recipe::Recipe, shared::Shared};
-use crate::cloth::{
-    ClothError, ClothMaterial, ClothMaterialMap, StiffnessFactors, Surface, TriangleMesh,
+use crate::{
+    cloth::{ClothError, ClothMaterial, ClothMaterialMap, StiffnessFactors, Surface, TriangleMesh},
+    plugin::threads::Threads,
 };
 
 /// Ticks without a cloth that waits for it, after which a task is given up.
@@ -51,7 +55,15 @@ impl BuildRequest {
         };
         let factors = self.factors(&surface)?;
         let before = self.before.as_deref();
-        let shared = Shared::new(self.recipe, &self.material, surface, factors, alike, before);
+        let shared = Shared::new(
+            Threads::This,
+            self.recipe,
+            &self.material,
+            surface,
+            factors,
+            alike,
+            before,
+        );
         // The first tick needs them.
         shared.surface.fans();
         if before.is_none_or(Shared::has_sheet) {
@@ -66,8 +78,10 @@ impl BuildRequest {
 struct Building {
     recipe: Recipe,
     task: Task<Result<Shared, ClothError>>,
+    /// The cloth that needs it in its next tick, if it is built ahead.
+    cloth: Option<Entity>,
     /// Whether the task has begun, or is not to begin any more.
-    has_begun: Arc<AtomicBool>,
+    is_claimed: Arc<AtomicBool>,
     /// Ticks since a cloth waited for it.
     idle: u32,
 }
@@ -102,35 +116,39 @@ impl AsyncBuilds {
         block_on(self.all.swap_remove(known).task).map(Some)
     }
 
-    /// The same, but waits until it is built; `None` also if the task has not begun: it could be behind any number of others.
-    ///
-    /// # Errors
-    /// Those of the surface, its grain, tears and map.
-    pub fn finish(&mut self, recipe: &Recipe) -> Result<Option<Shared>, ClothError> {
-        let Some(known) = self.all.iter().position(|known| known.recipe == *recipe) else {
-            return Ok(None);
-        };
+    /// The same of a task that has begun, and waits for its end; `None` also if it has not begun: it could be behind any number of others.
+    pub fn take_begun(&mut self, recipe: &Recipe) -> Option<Result<Shared, ClothError>> {
+        let known = self.all.iter().position(|known| known.recipe == *recipe)?;
         let building = self.all.swap_remove(known);
-        match building.has_begun.swap(true, Ordering::Relaxed) {
-            true => block_on(building.task).map(Some),
-            false => Ok(None),
-        }
+        (building.is_claimed)
+            .swap(true, Ordering::Relaxed)
+            .then(|| block_on(building.task))
     }
 
-    /// Whether a task builds this recipe.
-    pub fn builds(&self, recipe: &Recipe) -> bool {
-        self.all.iter().any(|known| known.recipe == *recipe)
-    }
-
-    /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`.
-    pub fn begin(&mut self, request: BuildRequest, mesh: TriangleMesh, alike: Vec<Arc<Shared>>) {
+    /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`. What is built ahead for `cloth`
+    /// takes the place of what was asked for it before.
+    pub fn begin(
+        &mut self,
+        request: BuildRequest,
+        mesh: TriangleMesh,
+        alike: Vec<Arc<Shared>>,
+        cloth: Option<Entity>,
+    ) {
+        self.all.retain(|known| {
+            let is_replaced = cloth.is_some() && known.cloth == cloth;
+            if is_replaced {
+                known.is_claimed.store(true, Ordering::Relaxed);
+            }
+            !is_replaced
+        });
         let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
-        let has_begun = Arc::new(AtomicBool::new(false));
+        let is_claimed = Arc::new(AtomicBool::new(false));
         self.all.push(Building {
             recipe: request.recipe.clone(),
-            has_begun: has_begun.clone(),
+            cloth,
+            is_claimed: is_claimed.clone(),
             task: pool.spawn(async move {
-                if has_begun.swap(true, Ordering::Relaxed) {
+                if is_claimed.swap(true, Ordering::Relaxed) {
                     // Nobody waits for it.
                     return Err(ClothError::MeshLoading);
                 }
@@ -146,36 +164,30 @@ mod tests {
     use std::{
         sync::mpsc::{Sender, channel},
         thread,
-        time::Duration,
+        time::{Duration, Instant},
     };
 
     use bevy::math::Vec3;
 
-    use super::*;
+    use super::{
+        super::shared::tests::{moved, recipe},
+        *,
+    };
     use crate::{
-        cloth::{Cloth, ClothParticles, ClothTears},
+        cloth::{Cloth, ClothTears},
         meshes::irregular,
-        solver::TickStep,
     };
 
-    fn recipe(cloth: &Cloth, edges: usize) -> Recipe {
-        let mut tears = ClothTears::default();
+    fn request(cloth: &Cloth, edges: usize, before: Option<Arc<Shared>>) -> BuildRequest {
         let surface = cloth.surface(Vec3::ONE).expect("a surface");
         let sides = surface.triangles().iter().map(|[a, b, _]| [*a, *b]);
+        let mut tears = ClothTears::default();
         tears.tear_all(sides.step_by(5).take(edges));
-        Recipe {
-            shape: cloth.shape.clone(),
-            scale: Vec3::ONE,
-            source: None,
-            grain: None,
-            tears,
-            as_mesh: false,
-        }
-    }
-
-    fn request(cloth: &Cloth, edges: usize, before: Option<Arc<Shared>>) -> BuildRequest {
         BuildRequest {
-            recipe: recipe(cloth, edges),
+            recipe: Recipe {
+                tears,
+                ..recipe(&cloth.shape, false)
+            },
             material: ClothMaterial {
                 stretch_compliance: 1.0e-3,
                 bend_rigidity: 1.0e-4,
@@ -186,22 +198,13 @@ mod tests {
         }
     }
 
-    /// Places (m) after eight ticks of a cloth that hangs by its first particle.
-    fn moved(shared: &Shared, material: &ClothMaterial) -> Vec<Vec3> {
-        let at_rest = ClothParticles::at_rest(&shared.surface, material);
-        let mut particles = at_rest.expect("a material");
-        particles.pin(0);
-        let mut solver = shared.solver.clone();
-        let step = TickStep {
-            seconds: 1.0 / 64.0,
-            substeps: 8,
-            acceleration: Vec3::new(1.0, -9.81, 2.0),
-            ..TickStep::default()
-        };
-        for _ in 0..8 {
-            solver.advance(&mut particles, step, &[], |_, _| false);
-        }
-        particles.positions().collect()
+    fn begin_ahead(builds: &mut AsyncBuilds, request: BuildRequest) {
+        builds.begin(
+            request,
+            TriangleMesh::default(),
+            Vec::new(),
+            Some(Entity::PLACEHOLDER),
+        );
     }
 
     /// The data that is built ahead of a cloth with other tears is that of a new cloth, bit for bit.
@@ -215,20 +218,27 @@ mod tests {
             let ahead = request(&cloth, 6, Some(Arc::new(before)));
             let (recipe, material) = (ahead.recipe.clone(), ahead.material);
             let mut builds = AsyncBuilds::default();
-            builds.begin(ahead, TriangleMesh::default(), Vec::new());
-            while !builds.all[0].has_begun.load(Ordering::Relaxed) {
+            begin_ahead(&mut builds, ahead);
+            let start = Instant::now();
+            while !builds.all[0].is_claimed.load(Ordering::Relaxed) {
+                assert!(
+                    start.elapsed() < Duration::from_secs(60),
+                    "it does not begin"
+                );
                 thread::sleep(Duration::from_millis(1));
             }
-            let built = builds.finish(&recipe).expect("a surface");
-            let built = built.expect("its task has begun");
+            let built = builds.take_begun(&recipe).expect("its task has begun");
+            let built = built.expect("a surface");
             let new = build(request(&cloth, 6, None)).expect("a surface");
-            assert!(new.surface.len() > cloth.surface(Vec3::ONE).expect("a surface").len());
+            assert!(new.surface.is_torn());
             assert_eq!(moved(&built, &material), moved(&new, &material));
-            assert!(!builds.builds(&recipe));
+            assert!(builds.all.is_empty());
         }
     }
 
-    /// A task that waits behind others is not waited for: the tick builds it itself.
+    /// A task that waits behind others is not waited for: the tick builds it itself. Nor is one whose cloth was torn again.
+    ///
+    /// No other test may keep all threads of the pool busy.
     #[test]
     fn a_task_that_has_not_begun_is_not_waited_for() {
         let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
@@ -241,21 +251,25 @@ mod tests {
                     begins.send(()).expect("it is waited for");
                     let _ended: Result<(), _> = waits.recv();
                 });
-                has_begun.recv().expect("a thread is free");
+                let begun = has_begun.recv_timeout(Duration::from_secs(60));
+                begun.expect("a thread is free");
                 (let_go, task)
             })
             .collect();
-        let ahead = request(&Cloth::new(6, 6, 0.1), 6, None);
-        let recipe = ahead.recipe.clone();
+        let cloth = Cloth::new(6, 6, 0.1);
+        let [first, second] = [3, 6].map(|edges| request(&cloth, edges, None));
+        let recipes = [&first, &second].map(|request| request.recipe.clone());
         let mut builds = AsyncBuilds::default();
-        builds.begin(ahead, TriangleMesh::default(), Vec::new());
-        let found = builds.finish(&recipe).expect("no error");
-        let has_begun = found.is_some();
+        begin_ahead(&mut builds, first);
+        let of_first = builds.all[0].is_claimed.clone();
+        begin_ahead(&mut builds, second);
+        let (count, is_claimed) = (builds.all.len(), of_first.load(Ordering::Relaxed));
+        let found = recipes.map(|recipe| builds.take_begun(&recipe).is_some());
         for (let_go, task) in busy {
             drop(let_go);
             block_on(task);
         }
-        assert!(!has_begun);
+        assert_eq!((count, is_claimed, found), (1, true, [false; 2]));
         assert!(builds.all.is_empty());
     }
 }

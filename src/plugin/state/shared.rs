@@ -10,7 +10,7 @@ use crate::{
     },
     contact::Sheet,
     hierarchy::QuadTree,
-    plugin::threads::join,
+    plugin::threads::{Threads, join},
     solver::{Bending, Solver},
 };
 
@@ -34,6 +34,7 @@ impl Shared {
     /// Builds springs, solver and tree of a surface, or takes those of `alike` that are the same: they share its recipe and
     /// surface. `before` is of the same cloth with other tears.
     pub fn new(
+        threads: Threads,
         recipe: Recipe,
         material: &ClothMaterial,
         surface: Arc<Surface>,
@@ -69,7 +70,8 @@ impl Shared {
                 Bending::with_factors(&surface, material, factors.clone(), known)
             }
         };
-        let (tree, ((springs, mut solver), bending)) = join(tree, || (springs(), bending()));
+        let (tree, ((springs, mut solver), bending)) =
+            join(threads, tree, || (springs(), bending()));
         solver.set_bending(bending);
         // Neither knows of stiffness, but a sheet's patches are those of the tree.
         let of_same_tree = alike.iter().filter(|of| of.has_tree(has_diagonals));
@@ -184,7 +186,7 @@ impl Stiffness {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use bevy::math::Vec3;
 
     use super::{super::shared_parts::SharedParts, *};
@@ -196,7 +198,7 @@ mod tests {
 
     type Wanted = (ClothMaterial, Arc<StiffnessFactors>);
 
-    fn recipe(shape: &ClothShape, as_mesh: bool) -> Recipe {
+    pub fn recipe(shape: &ClothShape, as_mesh: bool) -> Recipe {
         Recipe {
             grain: None,
             tears: ClothTears::default(),
@@ -371,7 +373,7 @@ mod tests {
     }
 
     /// The places (m) of a cloth that hangs by its first particle, after eight ticks.
-    fn moved(shared: &Shared, material: &ClothMaterial) -> Vec<Vec3> {
+    pub fn moved(shared: &Shared, material: &ClothMaterial) -> Vec<Vec3> {
         let at_rest = ClothParticles::at_rest(&shared.surface, material);
         let mut particles = at_rest.expect("a material");
         particles.pin(0);

@@ -2,14 +2,17 @@
 
 use std::sync::{Arc, Weak};
 
-use bevy::ecs::resource::Resource;
+use bevy::ecs::{entity::Entity, resource::Resource};
 
 use super::{
     async_build::{AsyncBuilds, BuildRequest},
     recipe::Recipe,
     shared::{Shared, Stiffnesses},
 };
-use crate::cloth::{ClothError, ClothMaterial, StiffnessFactors, Surface, TriangleMesh};
+use crate::{
+    cloth::{ClothError, ClothMaterial, StiffnessFactors, Surface, TriangleMesh},
+    plugin::threads::Threads,
+};
 
 /// All shared data in use.
 #[derive(Resource, Debug, Default)]
@@ -42,7 +45,15 @@ impl SharedParts {
         if let Some(known) = alike.iter().find(|known| known.stiffnesses == stiffnesses) {
             return Ok(known.clone());
         }
-        let shared = Shared::new(recipe.clone(), material, surface, factors, &alike, before);
+        let shared = Shared::new(
+            Threads::Compute,
+            recipe.clone(),
+            material,
+            surface,
+            factors,
+            &alike,
+            before,
+        );
         Ok(self.keep(shared))
     }
 
@@ -80,26 +91,23 @@ impl SharedParts {
                 return Ok(None);
             }
         }
-        self.builds.begin(request.clone(), mesh()?, alike);
+        self.builds.begin(request.clone(), mesh()?, alike, None);
         Err(ClothError::MeshLoading)
     }
 
-    /// Begins to build in the background what a cloth needs in its next tick, of parts `before` with other tears.
-    pub fn build_ahead(&mut self, request: BuildRequest) {
-        let is_known = self.builds.builds(&request.recipe);
-        let alike = self.alike(&request.recipe);
-        if !is_known && alike.is_empty() {
-            self.builds.begin(request, TriangleMesh::default(), alike);
+    /// Begins to build in the background what this cloth needs in its next tick, in place of what it needed before.
+    pub fn build_ahead(&mut self, cloth: Entity, request: BuildRequest) {
+        if self.alike(&request.recipe).is_empty() {
+            self.builds
+                .begin(request, TriangleMesh::default(), Vec::new(), Some(cloth));
         }
     }
 
-    /// The shared data of a recipe that is [built ahead](Self::build_ahead), to be kept until [`get`](Self::get) finds it.
-    ///
-    /// # Errors
-    /// Those of the surface, its grain, tears and map.
-    pub fn built_ahead(&mut self, recipe: &Recipe) -> Result<Option<Arc<Shared>>, ClothError> {
-        let built = self.builds.finish(recipe)?;
-        Ok(built.map(|built| self.keep(built)))
+    /// The shared data of a recipe that is [built ahead](Self::build_ahead), to be kept until [`get`](Self::get) finds it. `None` also
+    /// if it can't be built: [`get`](Self::get) says why.
+    pub fn built_ahead(&mut self, recipe: &Recipe) -> Option<Arc<Shared>> {
+        let built = self.builds.take_begun(recipe)?;
+        built.ok().map(|built| self.keep(built))
     }
 
     /// All that is made of a recipe.
