@@ -125,8 +125,8 @@ impl AsyncBuilds {
             .then(|| block_on(building.task))
     }
 
-    /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`. What is built ahead for `cloth`
-    /// takes the place of what was asked for it before.
+    /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`. A request for
+    /// `cloth`, to build ahead, takes the place of its last one.
     pub fn begin(
         &mut self,
         request: BuildRequest,
