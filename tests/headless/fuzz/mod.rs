@@ -19,9 +19,9 @@ use self::{
 };
 use crate::support::*;
 
-/// Runs by default, in CI, and ticks of each.
+/// Runs, and ticks of each: by default, and where tests run at their full length.
 const RUNS: [u64; 2] = [2, 30];
-const TICKS: usize = 400;
+const TICKS: [usize; 2] = [250, 400];
 
 /// Farther than this nothing without a fault may be from its frame (m), as `ClothParticles::validate` has it.
 const FARTHEST: f32 = 1.0e18;
@@ -214,7 +214,7 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
     let mut saved: Option<[ClothWorldSnapshot; 2]> = None;
     let mut is_in_wind = false;
     let mut of_world = Random(seed ^ 0xABCD);
-    for number in 0..TICKS {
+    for number in 0..TICKS[usize::from(is_long())] {
         for _ in 0..app.world_mut().resource_mut::<Random>().below(4) {
             act(app.world_mut());
         }

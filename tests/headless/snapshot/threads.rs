@@ -13,7 +13,7 @@ use super::scene::{Clock, everything};
 use crate::support::*;
 
 /// Ticks before it is saved, and after.
-const TICKS: [usize; 2] = [30, 60];
+const TICKS: [usize; 2] = [30, 40];
 
 /// What a process of its own is told: the file, and the number of threads.
 const FILE: &str = "BEVY_DRAPE_TEST_SNAPSHOT";
