@@ -41,10 +41,7 @@ const ENTRIES: &[Entry] = &[
     },
     Entry {
         name: "table",
-        pictures: &[(
-            "table.png",
-            "a tablecloth, to be pulled from under the dishes",
-        )],
+        pictures: &[("table.png", "a tablecloth, to be pulled away")],
     },
     Entry {
         name: "cape",

@@ -88,27 +88,27 @@ fn write<'a>(captions: impl Iterator<Item = Caption<'a>>, picture: &mut Pixels) 
     let mut fonts = fonts.with_pixels_per_point(1.0);
     for caption in captions {
         let ([name, what], [left, right]) = (caption.texts, caption.sides);
-        write_text(&mut fonts, picture, (name, NAME), |_| left, caption.middle);
+        let [_, end] = write_text(&mut fonts, picture, (name, NAME), |_| left, caption.middle);
         let left = |width| right.saturating_sub(width);
-        write_text(&mut fonts, picture, (what, WHAT), left, caption.middle);
+        let [begin, _] = write_text(&mut fonts, picture, (what, WHAT), left, caption.middle);
+        assert!(end < begin, "no place for “{what}” beside “{name}”");
     }
 }
 
-/// Writes a text in a colour: by its width, where it begins; and the height of its middle.
+/// Writes a text in a colour: by its width, where it begins; and the height of its middle. Returns where it begins and ends.
 fn write_text(
     fonts: &mut FontsView,
     picture: &mut Pixels,
     (text, color): (&str, [u8; 3]),
     left: impl Fn(usize) -> usize,
     middle: usize,
-) {
+) -> [usize; 2] {
     let font = FontId::proportional(LETTERS);
     let laid = fonts.layout_no_wrap(text.to_owned(), font, Color32::WHITE);
     let letters = fonts.image();
-    let start = [
-        left(laid.size().x.ceil() as usize) as f32,
-        middle as f32 - 0.5 * laid.size().y,
-    ];
+    let width = laid.size().x.ceil() as usize;
+    let begin = left(width);
+    let start = [begin as f32, middle as f32 - 0.5 * laid.size().y];
     for row in &laid.rows {
         for glyph in &row.glyphs {
             let at = row.pos + glyph.pos.to_vec2() + glyph.uv_rect.offset;
@@ -129,6 +129,7 @@ fn write_text(
             }
         }
     }
+    [begin, begin + width]
 }
 
 /// Left and upper edge of the picture with this number.
