@@ -327,9 +327,9 @@ pub fn cloths_made_alike_share_all_but_their_particles() {
                 + change.bytes_reallocated
         };
         let first = spawn(1);
-        let other = spawn(100) / 100;
+        let other = spawn(30) / 30;
         println!(
-            "a {name} of 961 particles: {first} bytes, and {other} each of a hundred more: {:.0} a particle",
+            "a {name} of 961 particles: {first} bytes, and {other} each of thirty more: {:.0} a particle",
             other as f64 / 961.0
         );
         assert!(other < 961 * a_particle + 16_384, "{name}: {other}");
