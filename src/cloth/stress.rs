@@ -19,7 +19,7 @@ const RINGS_AT_TIP: usize = 2;
 #[derive(Debug, Default)]
 pub(super) struct Stress {
     around: Vec<Patch>,
-    /// Of the smaller patch.
+    /// The same of the smaller patch.
     at_tip: Vec<Patch>,
     before: Vec<Patch>,
 }

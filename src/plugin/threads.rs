@@ -14,9 +14,9 @@ pub(crate) fn threads() -> usize {
 /// The threads that do a piece of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Threads {
-    /// Those of Bevy's compute pool. Who waits for them runs other tasks of the pool meanwhile: whole systems, too.
+    /// Those of Bevy's compute pool. A thread that waits for them runs other tasks of the pool meanwhile: whole systems, too.
     Compute,
-    /// The one that asks. Work that a tick may wait for takes no other: the system that waits could be what it runs meanwhile.
+    /// The current one. A tick may wait for such work. On the compute pool, the work could run the very system that waits for it.
     This,
 }
 

@@ -304,6 +304,8 @@ pub fn what_is_attached_or_animated_allocates_nothing() {
 /// of a soft grid, and of a mesh 60 for what it solves; a motion of second order takes 24 for what it remembers, and threads on a
 /// mesh 30 for what they have pulled with. That is 170 to 265 in all, and 16 kB for the cloth.
 pub fn cloths_made_alike_share_all_but_their_particles() {
+    // Enough to show what each takes besides what they share.
+    const COUNT: usize = 30;
     let mesh = meshes::irregular(1.0, 1.0, 1.0 / 30.0, 0.3);
     let upper_edge = Pins::new([Pin::at_rest(|place| place.y > -1.0e-3)]);
     let of_mesh = Cloth::triangles(mesh.positions, mesh.triangles);
@@ -327,9 +329,9 @@ pub fn cloths_made_alike_share_all_but_their_particles() {
                 + change.bytes_reallocated
         };
         let first = spawn(1);
-        let other = spawn(30) / 30;
+        let other = spawn(COUNT) / COUNT as isize;
         println!(
-            "a {name} of 961 particles: {first} bytes, and {other} each of thirty more: {:.0} a particle",
+            "a {name} of 961 particles: {first} bytes, and {other} each of {COUNT} more: {:.0} a particle",
             other as f64 / 961.0
         );
         assert!(other < 961 * a_particle + 16_384, "{name}: {other}");

@@ -48,7 +48,7 @@ pub(crate) fn build_torn_ahead(
         let Some(known) = &built.shared.recipe else {
             continue;
         };
-        // What is mended may be a grid again.
+        // A mended cloth may be a grid again.
         if tears.is_empty() || *tears == known.tears || material.validate().is_err() {
             continue;
         }
@@ -158,5 +158,38 @@ fn hold_parts(surface: &Surface, parents: &[u32], state: &mut ClothState) {
                 });
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{prelude::*, time::TimeUpdateStrategy};
+
+    use super::*;
+    use crate::{cloth::Cloth, plugin::ClothPlugin};
+
+    /// The frame in which something was torn begins to build it, once; the next tick takes it.
+    #[test]
+    fn a_tear_is_built_ahead() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, TransformPlugin, ClothPlugin::default()))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+        let parts = (Cloth::new(6, 6, 0.1), ClothTears::default());
+        let cloth = app.world_mut().spawn(parts).id();
+        app.finish();
+        app.cleanup();
+        (0..3).for_each(|_| app.update());
+        let building = |app: &App| app.world().resource::<SharedParts>().building();
+        assert_eq!(building(&app), 0);
+        let tears = app.world_mut().get_mut::<ClothTears>(cloth);
+        tears.expect("it may tear").tear_all([[12, 13], [13, 14]]);
+        for _ in 0..2 {
+            app.world_mut().run_schedule(Last);
+            assert_eq!(building(&app), 1);
+        }
+        app.update();
+        assert_eq!(building(&app), 0);
+        let built = app.world().get::<ClothBuilt>(cloth).expect("a cloth");
+        assert!(built.surface().is_torn());
     }
 }

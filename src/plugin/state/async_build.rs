@@ -116,13 +116,20 @@ impl AsyncBuilds {
         block_on(self.all.swap_remove(known).task).map(Some)
     }
 
-    /// The same of a task that has begun, and waits for its end; `None` also if it has not begun: it could be behind any number of others.
+    /// Takes the data of a task that has begun, and waits for its end. `None` also if the task has not begun: any number of others could
+    /// be ahead of it.
     pub fn take_begun(&mut self, recipe: &Recipe) -> Option<Result<Shared, ClothError>> {
         let known = self.all.iter().position(|known| known.recipe == *recipe)?;
         let building = self.all.swap_remove(known);
         (building.is_claimed)
             .swap(true, Ordering::Relaxed)
             .then(|| block_on(building.task))
+    }
+
+    /// Number of tasks.
+    #[cfg(test)]
+    pub fn len(&self) -> usize {
+        self.all.len()
     }
 
     /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`. A request for
@@ -236,7 +243,7 @@ mod tests {
         }
     }
 
-    /// A task that waits behind others is not waited for: the tick builds it itself. Nor is one whose cloth was torn again.
+    /// A tick does not wait for a task behind others: it builds the data itself. A request for the same cloth replaces the last one.
     ///
     /// No other test may keep all threads of the pool busy.
     #[test]

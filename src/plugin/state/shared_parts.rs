@@ -110,6 +110,12 @@ impl SharedParts {
         built.ok().map(|built| self.keep(built))
     }
 
+    /// Number of tasks that build.
+    #[cfg(test)]
+    pub fn building(&self) -> usize {
+        self.builds.len()
+    }
+
     /// All that is made of a recipe.
     fn alike(&self, recipe: &Recipe) -> Vec<Arc<Shared>> {
         let all = self.known.iter().filter_map(Weak::upgrade);

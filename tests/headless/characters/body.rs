@@ -41,7 +41,7 @@ fn go(
 }
 
 /// Of arms in any place, bent about any axis across at up to 7.5 rad/s, none passes through a sheet or a sleeve, of
-/// grid and of mesh, with any friction. It is looked for every 16th tick, or every 8th where tests run at their full length.
+/// grid and of mesh, with any friction. Every 16th tick is checked, every 8th where tests run at their full length.
 #[test]
 fn no_arm_passes_through_what_it_wears() {
     let (variants, every) = if is_long() { (100, 8) } else { (6, 16) };
