@@ -191,3 +191,36 @@ fn every_instruction_set_and_thread_count_gives_the_same_bits() {
         }
     }
 }
+
+/// Of particles up to 10¹⁸ m apart, the limit of valid ones, at up to 10¹⁸ m a sub-step; a grid and a mesh.
+#[test]
+fn the_air_of_any_place_and_speed_is_finite() {
+    let mesh = meshes::irregular(0.9, 0.7, 0.1, 0.3);
+    let mesh = Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a surface");
+    let of_mesh = ClothParticles::at_rest(&mesh, &ClothMaterial::COTTON).expect("a material");
+    for (surface, particles) in [crumpled(9, 7), (mesh, of_mesh)] {
+        for (far, fast) in (0..18).flat_map(|far| (0..18).map(move |fast| (far, fast))) {
+            let mut particles = particles.clone();
+            shake(&mut particles);
+            for index in 0..particles.len() {
+                let place = particles.position_at(index) * 10.0_f32.powi(far);
+                let moved = Vec3::splat(0.5 * 10.0_f32.powi(fast)) * (index as f32).cos();
+                particles.set_position(index, place).expect("it exists");
+                particles.set_displacement(index, moved).expect("it exists");
+            }
+            let (kernels, mut airflow) = (SimdLevel::Auto.kernels(), Airflow::new(&surface, AIR));
+            airflow.begin(1.0 / 64.0, 4);
+            airflow.before_substep(0, &particles, &kernels);
+            airflow.settle(&particles, &kernels);
+            let is_finite = |l: &LinearizedDrag| {
+                let both = l.push.iter().chain(&l.drag).flatten();
+                both.clone().all(|value| value.is_finite())
+            };
+            let impulse = airflow.impulse();
+            assert!(
+                airflow.linearized().iter().all(is_finite) && impulse.is_finite(),
+                "10^{far} m, 10^{fast} m a sub-step: {impulse}"
+            );
+        }
+    }
+}

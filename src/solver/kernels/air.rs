@@ -42,6 +42,9 @@ pub(crate) struct AeroCoefficients {
 /// Lower bound of the squares of normals, for faces without an area (m⁴).
 const NO_AREA: f32 = f32::MIN_POSITIVE;
 
+/// The air does not act on a particle that it would push harder (m/s²). Particles 10¹⁰ m apart have areas whose squares overflow.
+const STRONGEST: f32 = 1.0e25;
+
 /// The air's action on eight particles with these areas (normals as long as the area, m²) in these winds (m/s), and the
 /// position of each along its drag, for [`air_impulse`].
 #[inline(always)]
@@ -79,11 +82,13 @@ fn linearize(
         let force = (lift + 0.5 * drag) * allowed * along + rate * dot(v, n);
         let root = rate.sqrt();
         let pressed = coefficients.pressure * view[W + l];
-        let is_free = view[W + l] > 0.0;
+        let push = three(|axis| n[axis] * force + pressed * normal[axis]);
+        // Not so if it is NaN.
+        let is_pushed = push[0].abs() + push[1].abs() + push[2].abs() < STRONGEST;
+        let acts = is_pushed & (view[W + l] > 0.0);
         for axis in 0..3 {
-            let push = n[axis] * force + pressed * normal[axis];
-            linearized.push[axis][l] = if is_free { push } else { 0.0 };
-            linearized.drag[axis][l] = if is_free { n[axis] * root } else { 0.0 };
+            linearized.push[axis][l] = if acts { push[axis] } else { 0.0 };
+            linearized.drag[axis][l] = if acts { n[axis] * root } else { 0.0 };
         }
         place[l] = place_along(view, linearized, l);
     }
