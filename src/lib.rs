@@ -49,18 +49,16 @@ pub mod prelude {
     pub use crate::plugin::ClothPickingPlugin;
     #[cfg(feature = "mesh")]
     pub use crate::plugin::ClothRenderMesh;
+    pub use crate::plugin::authoring::*;
     #[cfg(feature = "pbr")]
     pub use crate::plugin::fabric;
     #[cfg(feature = "bake")]
     pub use crate::plugin::{BakeError, ClothBake};
     pub use crate::plugin::{
-        ClothAir, ClothAsyncBuild, ClothAttachment, ClothAttachments, ClothBlade, ClothBody,
-        ClothBone, ClothBones, ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothFrame,
-        ClothGrab, ClothGravity, ClothHit, ClothInertia, ClothLimitExceeded, ClothLod,
-        ClothLodLevel, ClothOrder, ClothPush, ClothRayCast, ClothSeam, ClothSeamSide,
-        ClothSnapshot, ClothStats, ClothSystems, ClothTarget, ClothTeleport, ClothTorn,
-        ClothTouchStarted, ClothTouchStopped, ClothWind, ClothWindShape, ClothWindZone,
-        ClothWorldSnapshot, DrapePlugins, GlobalClothLod, SnapshotError, shift_cloths,
+        ClothBlade, ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothFrame, ClothHit,
+        ClothLimitExceeded, ClothRayCast, ClothSnapshot, ClothStats, ClothSystems, ClothTorn,
+        ClothTouchStarted, ClothTouchStopped, ClothWorldSnapshot, DrapePlugins, SnapshotError,
+        shift_cloths,
     };
     #[cfg(feature = "gizmos")]
     pub use crate::plugin::{ClothGizmos, ShowClothGizmos};

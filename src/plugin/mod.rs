@@ -5,18 +5,19 @@
 //!   authoring   what a game writes            state   what the plugin keeps
 //!
 //!   FixedUpdate:   prepare → search → step → write_back          PostUpdate:   draw
-//!                                 bridge: rapier, egui, picking, snapshots, reflection, diagnostics, origins
+//!                                 bridge: rapier, egui, picking, snapshots, diagnostics, origins
 //! ```
 //!
 //! A stage imports from those before it. `simulation` adds the systems in their order.
 
-mod authoring;
+pub(crate) mod authoring;
 mod bridge;
 mod clock;
 mod draw;
 mod frame;
 mod naming;
 mod prepare;
+mod reflection;
 mod search;
 mod sets;
 mod simulation;
@@ -30,14 +31,7 @@ use bevy::{
     ecs::{intern::Interned, schedule::ScheduleLabel},
 };
 
-pub use authoring::{
-    ClothAir, ClothAsyncBuild, ClothAttachment, ClothAttachments, ClothBody, ClothBone, ClothBones,
-    ClothGrab, ClothGravity, ClothInertia, ClothLod, ClothLodLevel, ClothOrder, ClothPush,
-    ClothSeam, ClothSeamSide, ClothTarget, ClothTeleport, ClothWind, ClothWindShape, ClothWindZone,
-    GlobalClothLod,
-};
-#[cfg(feature = "mesh")]
-pub use authoring::{ClothMesh, ClothSkeleton};
+pub use authoring::*;
 #[cfg(feature = "egui")]
 #[doc(hidden)]
 pub use bridge::ClothColliderSpeed;

@@ -31,11 +31,7 @@ use bevy::{
 #[cfg(feature = "mesh")]
 use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    authoring::{
-        ClothAir, ClothAsyncBuild, ClothBody, ClothGrab, ClothGravity, ClothInertia, ClothOrder,
-        ClothPush, ClothSeam, ClothTeleport, ClothWind, ClothWindZone, give_order,
-    },
-    bridge::register_lists,
+    authoring::{self, ClothGrab, ClothGravity, ClothOrder, ClothSeam, ClothWindZone, give_order},
     frame::ClothFrame,
     naming::Part,
     prepare::{
@@ -44,6 +40,7 @@ use super::{
         forget_stitches, hold_cloths, let_go, note_enabled, note_removals, prepare_cloths,
         prepare_colliders, prepare_seams, prepare_wind,
     },
+    reflection::register_with_lists,
     search::{query_collisions, rebuild_hierarchies},
     sets::ClothSystems,
     state::{
@@ -59,7 +56,10 @@ use super::{
     },
 };
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, ClothPresence, ClothTearing, ClothTears},
+    cloth::{
+        Cloth, ClothGrain, ClothMaterial, ClothMaterialMap, ClothParticles, ClothPresence,
+        ClothSkin, ClothTearing, ClothTears, Pins,
+    },
     contact::{ClothCollider, ClothLayers, ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
     solver::{ClothCreasing, ClothPressure, ClothSettings},
@@ -110,7 +110,15 @@ impl Plugin for ClothPlugin {
     }
 }
 
+/// Registers the components of all floors for scenes and inspectors.
 fn register_types(app: &mut App) {
+    register_with_lists::<Cloth>(app);
+    register_with_lists::<ClothCollider>(app);
+    register_with_lists::<ClothGrain>(app);
+    register_with_lists::<ClothMaterialMap>(app);
+    register_with_lists::<ClothTears>(app);
+    register_with_lists::<Pins>(app);
+    register_with_lists::<ClothSkin>(app);
     app.register_type::<ClothMaterial>()
         .register_type::<ClothParticles>()
         .register_type::<ClothSettings>()
@@ -118,26 +126,16 @@ fn register_types(app: &mut App) {
         .register_type::<NarrowPhase>()
         .register_type::<ClothSelfCollision>()
         .register_type::<ClothLayers>()
-        .register_type::<ClothBody>()
-        .register_type::<ClothPush>()
         .register_type::<ClothContacts>()
         .register_type::<ClothFrame>()
         .register_type::<ClothStats>()
-        .register_type::<ClothTeleport>()
-        .register_type::<ClothAsyncBuild>()
-        .register_type::<ClothInertia>()
         .register_type::<ClothBuilt>()
         .register_type::<ClothSearch>()
         .register_type::<ClothFault>()
-        .register_type::<ClothGravity>()
-        .register_type::<ClothWind>()
-        .register_type::<ClothWindZone>()
-        .register_type::<ClothOrder>()
-        .register_type::<ClothAir>()
         .register_type::<ClothPressure>()
         .register_type::<ClothTearing>()
         .register_type::<ClothCreasing>();
-    register_lists(app);
+    authoring::register_types(app);
 }
 
 fn add_resources_and_observers(app: &mut App) {

@@ -36,6 +36,7 @@ pub use stiffening::ClothStiffening;
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothMaterial {
     /// Mass per area (kg/m²), positive.
     pub areal_density: f32,
@@ -72,6 +73,7 @@ pub struct ClothMaterial {
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothWeft {
     /// Compliance (m/N), zero or more.
     pub stretch_compliance: f32,

@@ -21,6 +21,7 @@ use crate::cloth::error::ClothError;
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothStiffening {
     /// The strain from which on it is stiffer: elongation over length at rest. Positive, at most 10.
     pub strain: f32,

@@ -3,6 +3,10 @@
 //! In: the game's values. Out: the same values, which later stages read. Beside some of them lies what the plugin writes with
 //! them: the push on a body, the mesh that is drawn, the skeleton taken over, and how far a character has moved.
 
+use bevy::app::App;
+
+use super::reflection::register_with_lists;
+
 mod async_build;
 mod attachments;
 mod body;
@@ -44,3 +48,24 @@ pub(crate) use wind::DENSITY;
 pub use wind::{ClothAir, ClothWind};
 pub(crate) use wind_zone::PlacedZone;
 pub use wind_zone::{ClothWindShape, ClothWindZone};
+
+/// Registers them for scenes and inspectors.
+pub(crate) fn register_types(app: &mut App) {
+    register_with_lists::<ClothAttachments>(app);
+    register_with_lists::<ClothBones>(app);
+    register_with_lists::<ClothGrab>(app);
+    register_with_lists::<ClothSeam>(app);
+    register_with_lists::<ClothLod>(app);
+    register_with_lists::<GlobalClothLod>(app);
+    app.register_type::<BoneColliderOf>()
+        .register_type::<ClothBody>()
+        .register_type::<ClothPush>()
+        .register_type::<ClothTeleport>()
+        .register_type::<ClothAsyncBuild>()
+        .register_type::<ClothInertia>()
+        .register_type::<ClothGravity>()
+        .register_type::<ClothWind>()
+        .register_type::<ClothWindZone>()
+        .register_type::<ClothOrder>()
+        .register_type::<ClothAir>();
+}

@@ -1,4 +1,4 @@
-//! Ways to and from the rest of the world: rapier, egui, picking, blades, snapshots, reflection, diagnostics, and floating origins.
+//! Ways to and from the rest of the world: rapier, egui, picking, blades, snapshots, diagnostics, and floating origins.
 //!
 //! In: any of the components. Out: colliders, bodies and velocities of rapier, widgets, hits of rays, cuts, snapshots, diagnostics. No stage imports
 //! from here.
@@ -17,7 +17,6 @@ mod rapier;
 #[cfg(feature = "rapier")]
 mod rapier_body;
 mod ray_cast;
-mod reflection;
 mod snapshot;
 
 #[cfg(feature = "bake")]
@@ -36,5 +35,4 @@ pub use rapier::{ClothRapierPlugin, RapierClothCollider};
 #[cfg(feature = "rapier")]
 pub use rapier_body::ClothPushBack;
 pub use ray_cast::{ClothHit, ClothRayCast};
-pub(crate) use reflection::register_lists;
 pub use snapshot::{ClothSnapshot, ClothWorldSnapshot, SnapshotError};

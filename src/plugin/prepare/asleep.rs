@@ -2,15 +2,12 @@
 
 use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
-use super::{
-    inputs::Inputs,
-    preparing::{NO_PINS, PrepareQueryItem, Surroundings},
-};
+use super::preparing::{NO_PINS, PrepareQueryItem, Surroundings};
 use crate::{
     cloth::ClothParticles,
     plugin::{
         frame::{ClothFrame, global_transform},
-        state::{ClothBuilt, EffectiveWind},
+        state::{ClothBuilt, EffectiveWind, Inputs},
     },
 };
 
@@ -32,23 +29,12 @@ pub(super) fn sleeps_as_it_was(
     if !(state.rest.is_asleep() && state.is_valid && cloth.stats.is_asleep) {
         return false;
     }
-    let acceleration = cloth.frame.isometry().rotation.inverse() * inputs.gravity;
-    let known = inputs.known(acceleration);
-    let known_contact = (
-        cloth.scratch.contact_settings.particle_radius,
-        cloth.scratch.contact_settings.friction,
-    );
     let source = built.source();
     let pins = cloth.game.pins.unwrap_or(&NO_PINS);
     // If something wakes it in this tick, it continues with the step that it would have been prepared with.
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
-        && state.inputs.known == Some(known)
-        && known_contact
-            == (
-                inputs.particle_radius(built.surface()),
-                inputs.material.friction,
-            )
+        && state.inputs.known == Some(*inputs)
         && state.inputs.written == Some(cloth.particles.last_changed())
         && state.attachments.given.is_empty()
         && cloth

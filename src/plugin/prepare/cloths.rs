@@ -17,7 +17,6 @@ use super::{
     carry::{carry, new_from_old},
     drag::jump,
     freeze::{freeze, thaw},
-    inputs::Inputs,
     notice::notice_new,
     preparing::{NO_PINS, PrepareQuery, PrepareQueryItem, Surroundings},
     skin::{move_with_pose, place_pose, stand_in_pose},
@@ -31,7 +30,7 @@ use crate::{
         },
         frame::{ClothFrame, global_transform},
         naming::Part,
-        state::{ClothFault, EffectiveWind, LodAction, Notices, SharedParts},
+        state::{ClothFault, EffectiveWind, Inputs, LodAction, Notices, SharedParts},
     },
 };
 

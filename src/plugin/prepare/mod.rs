@@ -18,7 +18,6 @@ mod drag;
 mod follow;
 mod freeze;
 mod grabs;
-mod inputs;
 mod islands;
 mod levels;
 mod neighbour;

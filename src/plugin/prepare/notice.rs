@@ -2,12 +2,12 @@
 
 use bevy::math::Vec3;
 
-use super::{cost::least_cost, inputs::Inputs, preparing::PrepareQueryItem};
+use super::{cost::least_cost, preparing::PrepareQueryItem};
 use crate::{
     cloth::{Pin, Pins, Surface},
     plugin::{
         authoring::ClothAttachments,
-        state::{Notice, Notices},
+        state::{Inputs, Notice, Notices},
         threads::{MIN_TO_SPLIT, threads},
     },
 };

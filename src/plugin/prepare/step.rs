@@ -6,12 +6,11 @@ use super::{
     asleep::ball,
     broad_phase::{reach, update_bounds},
     carry::carrier,
-    inputs::Inputs,
     preparing::{PrepareQueryItem, Surroundings},
 };
 use crate::{
     contact::ContactSettings,
-    plugin::state::{ClothBuilt, ClothState, EffectiveWind, RestsOn},
+    plugin::state::{ClothBuilt, ClothState, EffectiveWind, Inputs, RestsOn},
     solver::{RestRule, Substepping, TickStep},
 };
 
@@ -27,7 +26,7 @@ pub(super) fn see_whether_it_rests(
     let (particles, state) = (&cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&*cloth.built, &*cloth.scratch);
     let settings = inputs.settings;
-    let known = Some(inputs.known(acceleration));
+    let known = Some(*inputs);
     let (field, pressure) = (&*around.field, cloth.game.pressure(cloth.built.surface()));
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
     let is_still = state

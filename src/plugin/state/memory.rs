@@ -6,16 +6,17 @@ use bevy::{
         component::Component,
         entity::{Entity, EntityMapper, MapEntities},
     },
-    math::{Isometry3d, Vec3},
+    math::Isometry3d,
 };
 
-use super::{air::AirState, excess::Excess, lod::LodState, pose::Pose, resting::RestsOn};
+use super::{
+    air::AirState, excess::Excess, inputs::Inputs, lod::LodState, pose::Pose, resting::RestsOn,
+};
 use crate::{
-    cloth::{ClothParticles, ClothTearing},
-    contact::{Carrier, ClothSelfCollision, NarrowPhase},
-    hierarchy::SearchMethod,
+    cloth::ClothParticles,
+    contact::Carrier,
     plugin::authoring::{Attached, ClothAttachment},
-    solver::{ClothCreasing, ClothLimit, ClothSettings, Control, Rest, Stretch},
+    solver::{ClothLimit, Control, Rest, Stretch},
 };
 
 /// The memory of a cloth from tick to tick, besides its [`ClothParticles`](crate::cloth::ClothParticles) and its
@@ -96,21 +97,6 @@ impl AttachmentMemory {
     }
 }
 
-/// Settings and gravity: a cloth at rest wakes when they change. Its particles, its place, the air and what it is built from
-/// are compared elsewhere.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct KnownInputs {
-    pub settings: ClothSettings,
-    pub search: SearchMethod,
-    pub narrow_phase: NarrowPhase,
-    pub self_collision: Option<ClothSelfCollision>,
-    pub creasing: Option<ClothCreasing>,
-    pub tearing: Option<ClothTearing>,
-    /// Of gravity, in the cloth's frame (m/s²).
-    pub acceleration: Vec3,
-}
-
 /// The inputs of the last tick.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -118,7 +104,7 @@ pub(crate) struct InputMemory {
     /// When the plugin last wrote the particles: a later change is the game's.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub written: Option<Tick>,
-    pub known: Option<KnownInputs>,
+    pub known: Option<Inputs>,
     pub air: AirState,
     /// How many of its torn edges have opened: the last ones do so as the next tick begins.
     pub opened: usize,

@@ -53,6 +53,9 @@ use wind::LocalWind;
 /// with 80; four cost 13 % of a tick instead of 4 (64²).
 const LONGEST: f32 = 0.01;
 
+/// An impulse on a row of particles that is not below this (N s) is not counted: it belongs to no game, and `f32` may not hold it.
+const LARGEST_IMPULSE: f64 = 1.0e25;
+
 /// The air around a cloth, in the cloth's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
@@ -230,8 +233,11 @@ impl Airflow {
         for (row, (linearized, places)) in rows.zip(known) {
             let mut sum = [[0.0; LANES]; 3];
             (kernels.air_impulse)(row, linearized, places, seconds, &mut sum);
-            self.impulse +=
-                DVec3::from(sum.map_inline(|lanes| lanes.into_iter().map(f64::from).sum()));
+            let given = DVec3::from(sum.map_inline(|lanes| lanes.into_iter().map(f64::from).sum()));
+            // Not so if it is NaN.
+            if given.abs().max_element() < LARGEST_IMPULSE {
+                self.impulse += given;
+            }
         }
         self.memory.force = (self.impulse - before).as_vec3() / seconds;
         self.since = 0;

@@ -45,6 +45,9 @@ const NO_AREA: f32 = f32::MIN_POSITIVE;
 /// The air does not act on a particle that it would push harder (m/s²). Particles 10¹⁰ m apart have areas whose squares overflow.
 const STRONGEST: f32 = 1.0e25;
 
+/// Nor on one of no more than this inverse mass (1/kg): on pins, and on masses that overflow.
+const HEAVIEST: f32 = 1.0e-30;
+
 /// The air's action on eight particles with these areas (normals as long as the area, m²) in these winds (m/s), and the
 /// position of each along its drag, for [`air_impulse`].
 #[inline(always)]
@@ -85,7 +88,7 @@ fn linearize(
         let push = three(|axis| n[axis] * force + pressed * normal[axis]);
         // Not so if it is NaN.
         let is_pushed = push[0].abs() + push[1].abs() + push[2].abs() < STRONGEST;
-        let acts = is_pushed & (view[W + l] > 0.0);
+        let acts = is_pushed & (view[W + l] > HEAVIEST);
         for axis in 0..3 {
             linearized.push[axis][l] = if acts { push[axis] } else { 0.0 };
             linearized.drag[axis][l] = if acts { n[axis] * root } else { 0.0 };
@@ -139,7 +142,7 @@ pub(crate) fn air_impulse(
         for l in 0..LANES {
             let drag = three(|axis| linearized.drag[axis][l]);
             let moved = place_along(view, linearized, l) - place[l];
-            let is_free = view[W + l] > 0.0;
+            let is_free = view[W + l] > HEAVIEST;
             let mass = 1.0 / if is_free { view[W + l] } else { 1.0 };
             for axis in 0..3 {
                 let given = mass * (linearized.push[axis][l] * seconds - drag[axis] * moved);

@@ -1,4 +1,4 @@
-//! Components with lists, as scenes and inspectors apply them.
+//! Registration of components with lists, as scenes and inspectors apply them.
 
 use bevy::{
     app::App,
@@ -9,37 +9,10 @@ use bevy::{
     reflect::{FromReflect, GetTypeRegistration, PartialReflect, ReflectMut, ReflectRef, TypePath},
 };
 
-use crate::{
-    cloth::{Cloth, ClothGrain, ClothMaterialMap, ClothSkin, ClothTears, Pins},
-    contact::ClothCollider,
-    plugin::authoring::{
-        BoneColliderOf, ClothAttachments, ClothBones, ClothGrab, ClothLod, ClothSeam,
-        GlobalClothLod,
-    },
-};
-
-/// Registers all components with lists that scenes and inspectors write.
-pub(crate) fn register_lists(app: &mut App) {
-    register::<Cloth>(app);
-    register::<ClothCollider>(app);
-    register::<ClothGrain>(app);
-    register::<ClothMaterialMap>(app);
-    register::<ClothTears>(app);
-    register::<Pins>(app);
-    register::<ClothAttachments>(app);
-    register::<ClothBones>(app);
-    register::<ClothGrab>(app);
-    register::<ClothSeam>(app);
-    register::<ClothSkin>(app);
-    register::<ClothLod>(app);
-    register::<GlobalClothLod>(app);
-    app.register_type::<BoneColliderOf>();
-}
-
 /// Registers a component whose lists are cut to the length of the lists that are applied to them. Bevy keeps the
 /// surplus of a longer list: a scene that pins nothing would leave the top row pinned, wherever it names the pins after
 /// the cloth.
-fn register<C>(app: &mut App)
+pub(crate) fn register_with_lists<C>(app: &mut App)
 where
     C: Component<Mutability = Mutable> + FromReflect + TypePath + GetTypeRegistration + Clone,
 {

@@ -1,0 +1,139 @@
+//! The game's settings of a cloth: the components that are read, and their values in a tick.
+
+use bevy::{
+    ecs::{
+        change_detection::{DetectChanges, Ref, Tick},
+        query::QueryData,
+    },
+    math::Vec3,
+};
+
+use crate::{
+    cloth::{
+        Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothSkin,
+        ClothTearing, ClothTears, Pins, Surface,
+    },
+    contact::{ClothSelfCollision, NarrowPhase},
+    hierarchy::SearchMethod,
+    plugin::authoring::{ClothAir, ClothAttachments, ClothLod, ClothTeleport},
+    solver::{ClothCreasing, ClothPressure, ClothSettings},
+};
+
+/// The components of a cloth that the game writes.
+#[derive(QueryData)]
+pub(crate) struct GameQuery {
+    pub cloth: Ref<'static, Cloth>,
+    pub material: Option<&'static ClothMaterial>,
+    pub grain: Option<Ref<'static, ClothGrain>>,
+    pub map: Option<Ref<'static, ClothMaterialMap>>,
+    pub torn: (
+        Option<Ref<'static, ClothTears>>,
+        Option<&'static ClothTearing>,
+    ),
+    pub pins: Option<&'static Pins>,
+    pub attachments: Option<&'static ClothAttachments>,
+    pub skin: Option<Ref<'static, ClothSkin>>,
+    pub settings: Option<&'static ClothSettings>,
+    pub method: Option<&'static SearchMethod>,
+    pub narrow_phase: Option<&'static NarrowPhase>,
+    pub self_collision: Option<&'static ClothSelfCollision>,
+    pub air: (Option<&'static ClothAir>, Option<&'static ClothPressure>),
+    pub creasing: Option<&'static ClothCreasing>,
+    pub lod: Option<&'static ClothLod>,
+    pub teleport: Option<&'static ClothTeleport>,
+}
+
+/// The grain of a mesh from which the game took its [`ClothGrain`], or that never had one.
+static BY_TEXTURE: ClothGrain = ClothGrain::by_texture();
+
+impl GameQueryItem<'_, '_> {
+    /// When the map of its material was last changed, if it has one.
+    pub fn mapped(&self) -> Option<Tick> {
+        self.map.as_ref().map(DetectChanges::last_changed)
+    }
+
+    /// Its pressure. A closed surface that is torn open has burst.
+    pub fn pressure(&self, surface: &Surface) -> Option<&ClothPressure> {
+        let (_, pressure) = self.air;
+        pressure.filter(|_| surface.is_closed() || !surface.was_closed())
+    }
+
+    /// The tears and when they were last changed, if it has any.
+    pub fn tears(&self) -> Option<(&ClothTears, Tick)> {
+        let tears = self.torn.0.as_ref()?;
+        Some((&**tears, tears.last_changed()))
+    }
+
+    /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.
+    pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
+        let is_grid = matches!(self.cloth.shape, ClothShape::Grid(_) | ClothShape::Rope(_));
+        if is_grid || !self.material?.is_woven() {
+            return None;
+        }
+        let own = self.grain.as_ref();
+        Some(own.map_or((&BY_TEXTURE, None), |grain| {
+            (&**grain, Some(grain.last_changed()))
+        }))
+    }
+}
+
+/// The game's settings of a cloth in a tick, checked. Removed components count as their defaults. A cloth at rest wakes when one
+/// of them changes. Its particles, its place, the air and what it is built from are compared elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Inputs {
+    pub settings: ClothSettings,
+    pub material: ClothMaterial,
+    pub search: SearchMethod,
+    pub narrow_phase: NarrowPhase,
+    pub self_collision: Option<ClothSelfCollision>,
+    pub creasing: Option<ClothCreasing>,
+    pub tearing: Option<ClothTearing>,
+    /// In the world (m/s²).
+    pub gravity: Vec3,
+}
+
+impl Inputs {
+    /// The settings of a cloth; `gravity` is that of all cloths (m/s²).
+    ///
+    /// # Errors
+    /// The first value that is out of range. The material is checked when it changes.
+    pub fn of(game: &GameQueryItem, gravity: Vec3) -> Result<Self, ClothError> {
+        let settings = game.settings.copied().unwrap_or_default();
+        let material = game.material.copied().unwrap_or_default();
+        settings.validate()?;
+        if let Some(tearing) = game.torn.1 {
+            tearing.validate(&material)?;
+        }
+        let search = game.method.copied().unwrap_or_default();
+        search.validate()?;
+        if let Some(creasing) = game.creasing {
+            creasing.validate()?;
+        }
+        let gravity = settings.gravity.unwrap_or(gravity);
+        for value in gravity.to_array() {
+            ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
+        }
+        Ok(Self {
+            settings,
+            material,
+            search,
+            narrow_phase: match game.cloth.shape {
+                // A rope has no triangles.
+                ClothShape::Rope(_) => NarrowPhase::Particles,
+                _ => game.narrow_phase.copied().unwrap_or_default(),
+            },
+            self_collision: game.self_collision.copied(),
+            creasing: game.creasing.copied(),
+            tearing: game.torn.1.copied(),
+            gravity,
+        })
+    }
+
+    /// The distance at which particles lie on colliders (m): a rope's own radius.
+    pub fn particle_radius(&self, surface: &Surface) -> f32 {
+        surface
+            .rope_radius()
+            .unwrap_or(self.settings.particle_radius)
+    }
+}
