@@ -15,8 +15,8 @@ use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles},
     prelude::{
         ClothAttachments, ClothBody, ClothCollider, ClothCreasing, ClothGrab, ClothGravity,
-        ClothInertia, ClothLod, ClothLodLevel, ClothPaint, ClothSelfCollision, ClothSettings,
-        ClothSkin, DrapePlugins, Pin, Pins,
+        ClothInertia, ClothLod, ClothLodLevel, ClothPaint, ClothSeam, ClothSelfCollision,
+        ClothSettings, ClothSkin, DrapePlugins, Pin, Pins,
     },
 };
 use stats_alloc::Region;
@@ -278,6 +278,43 @@ pub fn what_touches_itself_allocates_nothing() {
         particles.set_position(index, folded).expect("finite");
     }
     assert_eq!(in_ticks(app, |_, _| {}), 0);
+}
+
+/// Two sheets that hang before each other, so near that they are moved together; sewn along their lower edges, or not. The first one's
+/// corner is moved.
+pub fn what_moves_together_allocates_nothing() {
+    for is_sewn in [false, true] {
+        let mut app = app_on_one_thread(());
+        let sheets = [0.0, 0.012].map(|z| {
+            let settings = ClothSettings {
+                sleeps: false,
+                ..default()
+            };
+            let sheet = (
+                Cloth::new(16, 16, 0.05),
+                ClothSelfCollision::default(),
+                settings,
+                Transform::from_xyz(0.0, 0.0, z),
+            );
+            app.world_mut().spawn(sheet).id()
+        });
+        if is_sewn {
+            let [first, second] = sheets;
+            let seam = ClothSeam::new((first, Pin::Row(15)), (second, Pin::Row(15)));
+            app.world_mut().spawn(seam);
+        }
+        let swing = |world: &mut World, count: u32| {
+            let mut place = world.get_mut::<Transform>(sheets[0]).expect("a place");
+            place.translation.z = 0.002 * (0.3 * count as f32).sin();
+        };
+        // Until the lists are as long as they will be.
+        for count in 0..400 {
+            swing(app.world_mut(), count);
+            app.update();
+        }
+        let allocations = in_ticks(app, swing);
+        assert_eq!(allocations, 0, "sewn: {is_sewn}");
+    }
 }
 
 /// Whether a cloth has one attached pin or two hundred, whether what tethers do not depend on is animated, and however its level of detail

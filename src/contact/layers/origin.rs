@@ -34,7 +34,7 @@ impl Origin {
     }
 
     pub fn clear(&mut self) {
-        self.cloths.clear();
+        self.cloths.iter_mut().for_each(Vec::clear);
     }
 
     /// Whether no pinned particle has moved since.
@@ -57,7 +57,8 @@ impl Origin {
     pub fn put_back(&self, cloths: &mut [Participant], is_pushed: &mut [bool]) -> f32 {
         let mut farthest = 0.0_f32;
         let each = self.cloths.iter().zip(cloths).zip(is_pushed);
-        for ((places, cloth), is_pushed) in each.filter(|((_, cloth), _)| !cloth.is_fixed) {
+        let is_stored = |places: &[_], cloth: &Participant| !places.is_empty() && !cloth.is_fixed;
+        for ((places, cloth), is_pushed) in each.filter(|((a, b), _)| is_stored(a, b)) {
             *is_pushed = true;
             for (before, block) in places.iter().zip(cloth.particles.blocks_mut()) {
                 for lane in 0..LANES {
@@ -77,7 +78,7 @@ impl Origin {
     #[inline]
     pub fn moved(&self, cloth: usize, slot: Slot, place: Vec3) -> Option<Vec3> {
         let places = self.cloths.get(cloth)?;
-        let before = places[slot.block].map_inline(|axis| axis[slot.lane]);
+        let before = places.get(slot.block)?.map_inline(|axis| axis[slot.lane]);
         Some(place - Vec3::from(before))
     }
 
@@ -89,7 +90,7 @@ impl Origin {
     /// Displacement of one particle since, in the common frame (m): common motion does not change distances.
     pub fn drift(&self, cloths: &[Participant]) -> Vec3 {
         match (self.cloths.first(), cloths.first()) {
-            (Some(places), Some(cloth)) => {
+            (Some(places), Some(cloth)) if !places.is_empty() => {
                 let at = cloth.particles.layout().slot_of(cloth.particles.len() / 2);
                 let place = places[at.block].map_inline(|axis| axis[at.lane]);
                 let moved =

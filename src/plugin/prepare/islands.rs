@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{
-        entity::Entity,
+        entity::{Entity, EntityIndexSet},
         resource::Resource,
         system::{Query, Res, ResMut},
     },
@@ -21,6 +21,8 @@ pub(crate) struct Islands {
     pub all: Vec<Island>,
     /// Those of the tick before.
     before: Vec<Island>,
+    /// Islands that are no more, whose memory is used again.
+    spare: Vec<Island>,
     /// Where each cloth may be, sorted by the first number.
     spans: Vec<Span>,
     parent: Vec<u32>,
@@ -37,9 +39,12 @@ pub(crate) struct Island {
     /// Ascending.
     pub cloths: Vec<Ordered>,
     pub contact: MutualContact,
+    /// The same, as queries take them.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    pub entities: EntityIndexSet,
     /// Their seams, in the order in which they are solved.
     #[cfg_attr(feature = "serialize", serde(skip))]
-    pub seams: Vec<Entity>,
+    pub seams: EntityIndexSet,
 }
 
 /// Where a cloth may be.
@@ -85,7 +90,8 @@ pub(crate) fn find_islands(
         }
     }
     std::mem::swap(&mut islands.all, &mut islands.before);
-    islands.all.clear();
+    let gone = islands.all.drain(..).map(Island::emptied);
+    islands.spare.extend(gone);
     if islands.spans.len() < 2 && seams.active.is_empty() {
         return;
     }
@@ -189,7 +195,7 @@ impl Islands {
     fn island(&mut self, root: usize) -> &mut Island {
         if self.island_of[root] == NONE {
             self.island_of[root] = self.all.len() as u32;
-            let mut island = Island::default();
+            let mut island = self.spare.pop().unwrap_or_default();
             island.cloths.push(self.spans[root].cloth);
             self.all.push(island);
         }
@@ -221,11 +227,13 @@ impl Islands {
             let [first, second] = seam.cloths.map(|(_, cloth)| self.span(cloth));
             if let (Some(span), true) = (first, second.is_some()) {
                 let root = self.find(span) as usize;
-                self.island(root).seams.push(seam.seam);
+                self.island(root).seams.insert(seam.seam);
             }
         }
         for island in &mut self.all {
             island.cloths.sort_unstable();
+            let cloths = island.cloths.iter().map(|(_, cloth)| *cloth);
+            island.entities.extend(cloths);
             let known = self
                 .before
                 .iter_mut()
@@ -239,20 +247,30 @@ impl Islands {
     }
 }
 
+impl Island {
+    /// Without all that it holds, but for its memory.
+    fn emptied(mut self) -> Self {
+        self.cloths.clear();
+        self.entities.clear();
+        self.seams.clear();
+        self.contact = MutualContact::default();
+        self
+    }
+}
+
 /// Wakes all cloths of an island in which one moves.
 fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
     // A touch on one of several sewn cloths moves all of them at once.
     let is_sewn = !island.seams.is_empty();
     let mut is_moving = false;
-    let entities = || island.cloths.iter().map(|(_, cloth)| cloth);
-    for cloth in cloths.iter_many(entities()) {
+    for cloth in cloths.iter_many(&island.entities) {
         let rest = &cloth.state.rest;
         is_moving |= !rest.is_calm() || (is_sewn && rest.calm() < SETTLED);
         if cloth.scratch.was_put {
             island.contact.forget();
         }
     }
-    let mut each = cloths.iter_many_mut(entities());
+    let mut each = cloths.iter_many_mut(&island.entities);
     while let Some(mut cloth) = each.fetch_next() {
         cloth.scratch.is_in_island = true;
         // Its contact with itself is part of its island's.

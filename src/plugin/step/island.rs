@@ -1,16 +1,13 @@
 //! The sub-steps of cloths that may touch each other, run together.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityIndexSet},
-        system::Query,
-    },
+    ecs::{entity::Entity, system::Query},
     log::warn,
     platform::time::Instant,
 };
 
 use super::{
-    member::{Member, members, participants},
+    member::{Few, Member, members, participants},
     seams::{Sewing, SewnSeams},
     tick::{Colliders, IntegrateQuery},
 };
@@ -34,8 +31,7 @@ pub(crate) fn integrate_together(
     names: &Query<Named>,
 ) {
     let start = Instant::now();
-    let entities: EntityIndexSet = island.cloths.iter().map(|(_, cloth)| *cloth).collect();
-    let mut members = members(cloths, &entities);
+    let mut members = members(cloths, &island.entities);
     let mut sewing = Sewing::begin(island, &members, seams);
     sewing.tell(&mut island.contact, &members);
     // All take the largest number of sub-steps that any of them needs.
@@ -104,15 +100,15 @@ fn advance(
     let seconds = members.iter().find_map(|member| member.step)?.seconds;
     let dt = seconds / substeps as f32;
     let mut ticks = begin(members, substeps);
-    let layers: Vec<ClothLayers> = members
+    let layers: Few<ClothLayers> = members
         .iter()
         .map(|member| member.cloth.layers.copied().unwrap_or_default())
         .collect();
     let meets = |a: usize, b: usize| layers[a].interacts_with(layers[b]);
     contact.begin(&participants(members), meets);
     warn_of_inside(members, contact, names);
-    let mut is_pushed = vec![false; members.len()];
-    let mut moved: Vec<Option<SubStep>> = Vec::with_capacity(members.len());
+    let mut is_pushed: Few<bool> = members.iter().map(|_| false).collect();
+    let mut moved: Few<Option<SubStep>> = Few::new();
     for index in 0..substeps {
         moved.clear();
         for (Member { cloth, .. }, tick) in members.iter_mut().zip(&mut ticks) {
@@ -150,7 +146,7 @@ fn advance(
 }
 
 /// Begins the tick of each member that is moved.
-fn begin(members: &mut [Member], substeps: u32) -> Vec<Option<StartedTick>> {
+fn begin(members: &mut [Member], substeps: u32) -> Few<Option<StartedTick>> {
     members
         .iter_mut()
         .map(|Member { cloth, step, .. }| {
@@ -167,7 +163,7 @@ fn begin(members: &mut [Member], substeps: u32) -> Vec<Option<StartedTick>> {
 }
 
 /// Ends the tick of each member. Returns the number of sub-steps that a tolerance needs, if these were too few.
-fn end(members: &mut [Member], ticks: Vec<Option<StartedTick>>, substeps: u32) -> Option<u32> {
+fn end(members: &mut [Member], ticks: Few<Option<StartedTick>>, substeps: u32) -> Option<u32> {
     let mut wanted = None;
     for (Member { cloth, step, .. }, tick) in members.iter_mut().zip(ticks) {
         let (Some(mut tick), Some(step)) = (tick, step) else {

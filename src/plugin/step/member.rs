@@ -5,11 +5,16 @@ use bevy::{
     math::Isometry3d,
 };
 
+use smallvec::SmallVec;
+
 use super::tick::{IntegrateQuery, IntegrateQueryItem};
 use crate::{
     contact::Participant,
     solver::{SeamCloth, TickStep},
 };
+
+/// One for each cloth of an island. It allocates nothing for up to eight.
+pub(super) type Few<T> = SmallVec<[T; 8]>;
 
 /// A cloth of an island, in its tick.
 pub(super) struct Member<'w, 's> {
@@ -23,8 +28,8 @@ pub(super) struct Member<'w, 's> {
 pub(super) fn members<'w, 's>(
     cloths: &'w mut Query<'_, 's, IntegrateQuery>,
     entities: &EntityIndexSet,
-) -> Vec<Member<'w, 's>> {
-    let mut members = Vec::new();
+) -> Few<Member<'w, 's>> {
+    let mut members = Few::new();
     for mut cloth in cloths.iter_many_unique_mut(entities) {
         let is_asleep = cloth.state.rest.is_asleep();
         // One that sleeps stays prepared while nothing changes.
@@ -56,7 +61,7 @@ pub(super) fn members<'w, 's>(
 }
 
 /// Those that touch cloth.
-pub(super) fn participants<'a>(members: &'a mut [Member]) -> Vec<Participant<'a>> {
+pub(super) fn participants<'a>(members: &'a mut [Member]) -> Few<Participant<'a>> {
     let each = members.iter_mut();
     each.filter_map(|member| {
         let settings = member.cloth.scratch.self_collision?;

@@ -1,11 +1,11 @@
 //! The seams of an island, in their tick.
 
 use bevy::{
-    ecs::{entity::EntityIndexSet, system::Query, world::Mut},
+    ecs::{system::Query, world::Mut},
     math::Isometry3d,
 };
 
-use super::member::Member;
+use super::member::{Few, Member};
 use crate::{
     contact::MutualContact,
     plugin::{
@@ -20,7 +20,7 @@ pub(crate) type SewnSeams<'w, 's> = Query<'w, 's, (&'static ClothSeam, &'static 
 
 /// The seams of an island, in the order in which they are solved.
 #[derive(Default)]
-pub(super) struct Sewing<'w>(Vec<Sewn<'w>>);
+pub(super) struct Sewing<'w>(Few<Sewn<'w>>);
 
 /// A seam between two members of an island, or of one with itself.
 struct Sewn<'w> {
@@ -37,9 +37,8 @@ impl<'w> Sewing<'w> {
         if island.seams.is_empty() {
             return Self::default();
         }
-        let entities: EntityIndexSet = island.seams.iter().copied().collect();
         let sewn = seams
-            .iter_many_unique_mut(&entities)
+            .iter_many_unique_mut(&island.seams)
             .filter_map(|(seam, mut stitches)| {
                 let place = |cloth| members.iter().position(|of| of.cloth.entity == cloth);
                 let [Some(a), Some(b)] = stitches.cloths?.map(place) else {
