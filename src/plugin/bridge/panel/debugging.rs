@@ -18,7 +18,8 @@ use crate::{
     contact::NarrowPhase,
     hierarchy::{SearchMethod, SearchReason},
     plugin::{
-        bridge::diagnostics::ClothDiagnosticsPlugin, draw::ShowClothGizmos, state::ClothStats,
+        authoring::ClothGravity, bridge::diagnostics::ClothDiagnosticsPlugin,
+        draw::ShowClothGizmos, state::ClothStats,
     },
     solver::{ClothSettings, Substepping, TimeOrder},
 };
@@ -201,7 +202,49 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
 }
 
 fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
-    let substepping = &mut settings.substepping;
+    show_substeps(ui, &mut settings.substepping);
+    let mut is_first = settings.order == TimeOrder::First;
+    ui.checkbox(&mut is_first, "Verlet as in the paper").on_hover_text(
+        "First order in time, equation (2): swings lose energy, more with fewer sub-steps. Off: second order",
+    );
+    settings.order = match is_first {
+        true => TimeOrder::First,
+        false => TimeOrder::Second,
+    };
+    ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(
+        "No particle gets farther from a pin than the cloth between them allows: less stretch at the same sub-steps",
+    );
+    ui.checkbox(&mut settings.sleeps, "sleeps at rest")
+        .on_hover_text("A cloth at rest is not simulated until something disturbs it");
+    let mut millimetres = 1.0e3 * settings.particle_radius;
+    let tip = "Radius of each particle (mm): how far from a collider the cloth lies";
+    if slide(
+        ui,
+        "radius, mm",
+        tip,
+        &mut millimetres,
+        0.0..=50.0,
+        |slider| slider.fixed_decimals(1),
+    ) {
+        settings.particle_radius = millimetres / 1.0e3;
+    }
+    let mut is_own = settings.gravity.is_some();
+    ui.checkbox(&mut is_own, "own gravity")
+        .on_hover_text("Gravity for this cloth alone, in place of that of all");
+    let own = settings.gravity.unwrap_or(ClothGravity::default().0);
+    settings.gravity = is_own.then_some(own);
+    if let Some(gravity) = &mut settings.gravity {
+        let mut down = -gravity.y;
+        let tip = "Gravity of this cloth, downwards (m/s²)";
+        if slide(ui, "down, m/s²", tip, &mut down, 0.0..=25.0, |slider| {
+            slider.fixed_decimals(2)
+        }) {
+            gravity.y = -down;
+        }
+    }
+}
+
+fn show_substeps(ui: &mut Ui, substepping: &mut Substepping) {
     let choices = [
         (
             "automatic",
@@ -248,23 +291,6 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
             slide(ui, "at most", tip, max_substeps, 1..=400, |slider| slider);
         }
     }
-    let mut is_first = settings.order == TimeOrder::First;
-    ui.checkbox(&mut is_first, "Verlet as in the paper").on_hover_text(
-        "First order in time, equation (2): swings lose energy, more with fewer sub-steps. Off: second order",
-    );
-    let order = if is_first {
-        TimeOrder::First
-    } else {
-        TimeOrder::Second
-    };
-    if settings.order != order {
-        settings.order = order;
-    }
-    ui.checkbox(&mut settings.tethers, "tethers").on_hover_text(
-        "No particle gets farther from a pin than the cloth between them allows: less stretch at the same sub-steps",
-    );
-    ui.checkbox(&mut settings.sleeps, "sleeps at rest")
-        .on_hover_text("A cloth at rest is not simulated until something disturbs it");
 }
 
 /// The exact values, in their units.

@@ -9,6 +9,9 @@ const NAME: f32 = 84.0;
 const SLIDER: f32 = 110.0;
 const VALUE: f32 = 62.0;
 
+/// Largest height of an open menu (logical pixels): all searches fit.
+const MENU: f32 = 400.0;
+
 /// A name, and a widget beside it.
 pub(super) fn row<R>(ui: &mut Ui, name: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
@@ -55,6 +58,7 @@ pub(super) fn choose<T: Clone + PartialEq>(
         ComboBox::from_id_salt(name)
             .selected_text(now)
             .truncate()
+            .height(MENU)
             .show_ui(ui, |ui| {
                 for (name, tip, each) in all {
                     let choice = ui.selectable_value(value, each, name);

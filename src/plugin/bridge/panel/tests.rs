@@ -1,13 +1,18 @@
 //! The panel, drawn without a window.
 
+use std::fmt::Debug;
+
 use bevy::{
     ecs::{change_detection::DetectChanges, system::SystemState},
     prelude::*,
+    reflect::{Typed, structs::Struct},
 };
 
 use super::*;
 use crate::{
     cloth::{Cloth, ClothStiffening, ClothWeft},
+    contact::NarrowPhase,
+    hierarchy::SearchMethod,
     plugin::{DrapePlugins, draw::ShowClothGizmos, state::ClothStats},
     solver::ClothSettings,
 };
@@ -45,9 +50,13 @@ fn draw(app: &mut App, context: &egui::Context, size: egui::Vec2) -> egui::Rect 
     places.last().expect("three frames")
 }
 
-/// All texts that can be seen after some frames in a window of 1280 × 720, each with its place.
-fn texts(app: &mut App, context: &egui::Context) -> Vec<(String, egui::Rect)> {
-    let size = egui::vec2(1280.0, 720.0);
+const WINDOW: egui::Vec2 = egui::vec2(1280.0, 720.0);
+
+/// A window in which all rows of a cloth can be seen.
+const TALL: egui::Vec2 = egui::vec2(1280.0, 2400.0);
+
+/// All texts that can be seen after some frames in a window of this size, each with its place.
+fn texts_in(app: &mut App, context: &egui::Context, size: egui::Vec2) -> Vec<(String, egui::Rect)> {
     let frames = (0..3).map(|_| frame(app, context, size, Vec::new()).1);
     let output = frames.last().expect("three frames");
     let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
@@ -71,12 +80,35 @@ fn texts(app: &mut App, context: &egui::Context) -> Vec<(String, egui::Rect)> {
     texts
 }
 
+/// Those in a window of 1280 × 720.
+fn texts(app: &mut App, context: &egui::Context) -> Vec<(String, egui::Rect)> {
+    texts_in(app, context, WINDOW)
+}
+
 /// Clicks the text.
 fn click(app: &mut App, context: &egui::Context, text: &str) {
-    let seen = texts(app, context);
+    click_beside(app, context, text, None, WINDOW);
+}
+
+/// Clicks the text, or the widget this far to the right of where it begins.
+fn click_beside(
+    app: &mut App,
+    context: &egui::Context,
+    text: &str,
+    beside: Option<f32>,
+    size: egui::Vec2,
+) {
+    let seen = texts_in(app, context, size);
     let found = seen.iter().find(|(each, _)| each == text);
-    let pos = found.map(|(_, place)| place.center());
+    let pos = found.map(|(_, place)| match beside {
+        Some(by) => egui::pos2(place.left() + by, place.center().y),
+        None => place.center(),
+    });
     let pos = pos.unwrap_or_else(|| panic!("{text} is not to be seen: {seen:?}"));
+    press(app, context, pos, size);
+}
+
+fn press(app: &mut App, context: &egui::Context, pos: egui::Pos2, size: egui::Vec2) {
     let button = |pressed| egui::Event::PointerButton {
         pos,
         button: egui::PointerButton::Primary,
@@ -84,7 +116,7 @@ fn click(app: &mut App, context: &egui::Context, text: &str) {
         modifiers: egui::Modifiers::NONE,
     };
     for event in [egui::Event::PointerMoved(pos), button(true), button(false)] {
-        frame(app, context, egui::vec2(1280.0, 720.0), vec![event]);
+        frame(app, context, size, vec![event]);
     }
 }
 
@@ -281,6 +313,92 @@ fn showing_a_value_does_not_change_it() {
     );
     let material = world.entity(cloth).get_ref::<ClothMaterial>().expect("one");
     assert!(!material.is_changed(), "not even marked as changed");
+}
+
+/// The middle of the sliders, from where their names begin.
+const SLIDER: Option<f32> = Some(84.0 + 8.0 + 60.0);
+
+/// Clicks that change one field each of a component, and no other. There is one for each field.
+fn each_field_changes<C: Component + Struct + Typed + Clone>(clicks: &[(&str, &str, Option<f32>)]) {
+    let fields = C::type_info().as_struct().expect("a struct").field_names();
+    let mut named: Vec<&str> = clicks.iter().map(|(field, ..)| *field).collect();
+    named.sort_unstable();
+    named.dedup();
+    let mut all = fields.to_vec();
+    all.sort_unstable();
+    assert_eq!(named, all, "clicks for each field");
+    for (changed, text, beside) in clicks {
+        let (mut app, context) = cloths(1);
+        let mut cloths = app.world_mut().query_filtered::<Entity, With<Cloth>>();
+        let cloth = cloths.single(app.world()).expect("one");
+        click_beside(&mut app, &context, "debugging", None, TALL);
+        let before = app.world().get::<C>(cloth).expect("it has one").clone();
+        click_beside(&mut app, &context, text, *beside, TALL);
+        let after = app.world().get::<C>(cloth).expect("it has one");
+        for field in fields {
+            let [was, is] = [&before, after].map(|of| of.field(field).expect("it exists"));
+            let is_same = was.reflect_partial_eq(is) == Some(true);
+            assert_eq!(
+                is_same,
+                field != changed,
+                "a click at “{text}”: {field} is {is:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn each_setting_can_be_changed() {
+    each_field_changes::<ClothSettings>(&[
+        ("substepping", "fixed", None),
+        ("substepping", "tolerance", None),
+        ("gravity", "own gravity", None),
+        ("particle_radius", "radius, mm", SLIDER),
+        ("tethers", "tethers", None),
+        ("order", "Verlet as in the paper", None),
+        ("sleeps", "sleeps at rest", None),
+    ]);
+    each_field_changes::<ClothMaterial>(&[
+        ("areal_density", "mass, kg/m²", SLIDER),
+        ("stretch_compliance", "stretch, m/N", SLIDER),
+        ("shear_compliance", "shear, m/N", SLIDER),
+        ("bend_rigidity", "bend, N·m", SLIDER),
+        ("weft", "has a weft", None),
+        ("stiffening", "stiffens", None),
+        ("stretch_damping", "loss, s", SLIDER),
+        ("damping", "damping D", SLIDER),
+        ("friction", "friction μ", SLIDER),
+    ]);
+}
+
+#[test]
+fn each_search_and_contact_can_be_chosen() {
+    for method in SearchMethod::ALL {
+        choose_and_see("search", &method.to_string(), method);
+    }
+    for (name, narrow_phase) in NarrowPhase::ALL {
+        choose_and_see("contact by", name, narrow_phase);
+    }
+}
+
+/// Chooses an entry of a menu, of a cloth that has the default.
+fn choose_and_see<C: Component + PartialEq + Debug>(menu: &str, entry: &str, expected: C) {
+    let (mut app, context) = cloths(1);
+    click_beside(&mut app, &context, "debugging", None, TALL);
+    click_beside(&mut app, &context, menu, SLIDER, TALL);
+    let seen = texts_in(&mut app, &context, TALL);
+    // The entry comes after the row that may show the same.
+    let place = seen.iter().rfind(|(text, _)| text == entry);
+    let place = place
+        .unwrap_or_else(|| panic!("{entry} is not to be seen: {seen:?}"))
+        .1;
+    press(&mut app, &context, place.center(), TALL);
+    let mut all = app.world_mut().query_filtered::<&C, With<Cloth>>();
+    assert_eq!(
+        all.single(app.world()).expect("one"),
+        &expected,
+        "{entry} of {menu}"
+    );
 }
 
 #[test]
