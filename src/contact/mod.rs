@@ -17,7 +17,7 @@ mod friction;
 mod layers;
 mod particles;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod triangles;
 
 #[doc(hidden)]

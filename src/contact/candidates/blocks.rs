@@ -221,3 +221,63 @@ pub(crate) struct Ranges {
     pub blocks: Range<usize>,
     pub budgets: Range<usize>,
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Vec3;
+
+    use super::*;
+    use crate::{cloth::Cloth, contact::tests::Random, meshes};
+
+    /// The particles of one collider after the other, found in any order and more than once, on a grid and on a mesh: each is a
+    /// candidate once, in the cloth's order, in its lane of its block. The corners of its triangles are in blocks, too, unless one
+    /// of the triangles that meet it is left out.
+    #[test]
+    fn each_particle_is_a_candidate_once() {
+        let grid = Cloth::new(19, 11, 0.1).surface(Vec3::ONE).expect("a grid");
+        let mesh = meshes::irregular(0.9, 0.7, 0.1, 0.3);
+        let mesh = Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).expect("a mesh");
+        let mut random = Random(3);
+        for surface in [grid, mesh] {
+            let (layout, count) = (surface.layout(), surface.len());
+            let mut candidates = Candidates::default();
+            for tick in 0..40 {
+                candidates.clear();
+                for _ in 0..4 {
+                    let most = 2 * random.below(count as u32);
+                    let found: Vec<u32> = (0..most).map(|_| random.below(count as u32)).collect();
+                    let left_out = random.below(count as u32);
+                    let is_left_out = |corners: &[u32; 3]| corners.contains(&left_out);
+                    let by_triangles = (tick % 2 == 0).then_some(&is_left_out);
+                    let ranges = candidates.add(&found, &surface, layout, by_triangles);
+                    let all = &candidates.all[ranges.candidates.clone()];
+                    let mut expected = found.clone();
+                    expected.sort_unstable();
+                    expected.dedup();
+                    assert!(all.iter().map(|of| of.particle).eq(expected));
+                    let blocks = &candidates.blocks[ranges.blocks.clone()];
+                    assert!(blocks.is_sorted_by(|a, b| a.block < b.block));
+                    let has_block =
+                        |block: usize| blocks.iter().any(|of| of.block as usize == block);
+                    for candidate in all {
+                        let (block, lane) = candidate.lane();
+                        let (contact, slot) = (
+                            &candidates.blocks[block],
+                            layout.slot_of(candidate.particle as usize),
+                        );
+                        assert!(ranges.blocks.contains(&block));
+                        assert_eq!((contact.block as usize, lane), (slot.block, slot.lane));
+                        let meets = surface.faces().of(candidate.particle);
+                        let is_whole = by_triangles.is_some() && !meets.iter().any(is_left_out);
+                        let fan = candidate.fan(surface.fans());
+                        let own = surface.fans().of(candidate.particle);
+                        assert_eq!(fan.faces, if is_whole { own.faces } else { &[] });
+                        assert!(fan.corners.iter().all(|corner| has_block(corner.block)));
+                    }
+                    let lanes: u32 = blocks.iter().map(|of| of.lanes.count_ones()).sum();
+                    assert_eq!(lanes as usize, all.len());
+                }
+            }
+        }
+    }
+}

@@ -280,3 +280,104 @@ fn wake(island: &mut Island, cloths: &mut Query<Neighbour>) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::world::World;
+
+    use super::*;
+    use crate::{contact::tests::Random, plugin::authoring::ClothOrder};
+
+    /// Cloths at random places, some alike, some in other layers, some without a box.
+    fn spans(random: &mut Random, world: &mut World) -> Vec<Span> {
+        let count = random.below(25);
+        let layers = [[1, 1], [2, 2], [3, 3], [1, 2]];
+        (0..count)
+            .map(|_| {
+                let [memberships, filters] = layers[random.below(4) as usize];
+                let centre = random.within(1.5);
+                let radius = random.between(0.0, 0.8);
+                let half = Vec3::splat(radius * random.part());
+                Span {
+                    cloth: (ClothOrder(random.below(5).into()), world.spawn_empty().id()),
+                    centre,
+                    radius,
+                    layers: ClothLayers {
+                        memberships,
+                        filters,
+                    },
+                    touches: random.below(4) > 0,
+                    bounds: (random.below(4) > 0).then_some([centre - half, centre + half]),
+                }
+            })
+            .collect()
+    }
+
+    fn meet(a: &Span, b: &Span) -> bool {
+        let boxes_meet = match (a.bounds, b.bounds) {
+            (Some([low, high]), Some([other_low, other_high])) => {
+                (0..3).all(|axis| low[axis] <= other_high[axis] && other_low[axis] <= high[axis])
+            }
+            _ => true,
+        };
+        a.centre.distance(b.centre) <= a.radius + b.radius
+            && a.touches
+            && b.touches
+            && a.layers.interacts_with(b.layers)
+            && boxes_meet
+    }
+
+    /// By brute force: pairs are joined until nothing changes.
+    fn by_brute_force(spans: &[Span]) -> Vec<Vec<Ordered>> {
+        let mut group: Vec<usize> = (0..spans.len()).collect();
+        let pairs = || (0..spans.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        for (a, b) in pairs().filter(|(a, b)| meet(&spans[*a], &spans[*b])) {
+            let [from, to] = [group[a], group[b]];
+            group
+                .iter_mut()
+                .filter(|of| **of == from)
+                .for_each(|of| *of = to);
+        }
+        let each = (0..spans.len()).map(|of| {
+            let all = spans.iter().zip(&group).filter(|(_, group)| **group == of);
+            let mut cloths: Vec<Ordered> = all.map(|(span, _)| span.cloth).collect();
+            cloths.sort_unstable();
+            cloths
+        });
+        let mut islands: Vec<_> = each.filter(|cloths| cloths.len() > 1).collect();
+        islands.sort_unstable();
+        islands
+    }
+
+    #[test]
+    fn islands_are_those_of_brute_force() {
+        let (mut random, mut world) = (Random(8), World::new());
+        let (mut islands, mut largest) = (Islands::default(), 0);
+        for case in 0..500 {
+            let spans = spans(&mut random, &mut world);
+            let boxes: Vec<_> = spans
+                .iter()
+                .map(|span| (span.cloth.1, span.bounds))
+                .collect();
+            let bounds = |cloth| boxes.iter().find(|(of, _)| *of == cloth)?.1;
+            let unasked = spans.iter().map(|span| Span {
+                bounds: None,
+                ..*span
+            });
+            islands.begin(unasked);
+            islands.join(bounds);
+            islands.sew(&Seams::default());
+            let gone = islands.all.drain(..).map(Island::emptied);
+            islands.spare.extend(gone);
+            islands.collect(&Seams::default());
+            let found: Vec<_> = islands.all.iter().map(|of| of.cloths.clone()).collect();
+            assert_eq!(found, by_brute_force(&spans), "case {case}");
+            for island in &islands.all {
+                let cloths = island.cloths.iter().map(|(_, cloth)| cloth);
+                assert!(island.entities.iter().eq(cloths), "case {case}");
+            }
+            largest = found.iter().map(Vec::len).fold(largest, usize::max);
+        }
+        assert!(largest > 5, "{largest} cloths");
+    }
+}
