@@ -101,6 +101,7 @@ pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]
 pub use kernels::SimdLevel;
 pub(crate) use motion::MotionConstraints;
+pub(crate) use partitions::with_threads_awake;
 #[doc(hidden)]
 pub use rest::{Rest, RestRule};
 pub(crate) use seam::{Seam, SeamCloth, SeamPull};

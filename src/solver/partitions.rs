@@ -48,7 +48,7 @@ pub(super) fn in_partitions<T: Send>(parts: impl IntoIterator<Item = T>, work: i
 
 /// Runs `work` with a thread of the pool awake for each partition but the caller's own. A sub-step's partitions are ready
 /// within microseconds of each other; a thread that fell asleep in between would take a hundred to come back.
-pub(super) fn with_threads_awake<R>(partitions: usize, work: impl FnOnce() -> R) -> R {
+pub(crate) fn with_threads_awake<R>(partitions: usize, work: impl FnOnce() -> R) -> R {
     if partitions <= 1 {
         return work();
     }

@@ -13,7 +13,7 @@ use super::{limits::MAX_PARTICLES, particle_id::ParticleId, spring::Spring};
 /// and continues with the other entities. Fixing the value brings the entity back.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
 #[type_path = "bevy_drape"]
-#[reflect(opaque, Debug, Clone, PartialEq)]
+#[reflect(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothError {
     /// Fewer than two columns or rows.
@@ -36,8 +36,10 @@ pub enum ClothError {
     #[error("{quantity} must be {expected}, not {value}")]
     Quantity {
         /// The name of the quantity, with its unit.
+        #[reflect(ignore)]
         quantity: &'static str,
         /// The valid range.
+        #[reflect(ignore)]
         expected: &'static str,
         /// The invalid value.
         value: f32,
@@ -356,8 +358,10 @@ pub enum ClothError {
     )]
     NoSuchBounds {
         /// The bounding volumes, in the plural.
+        #[reflect(ignore)]
         volume: &'static str,
         /// The rule.
+        #[reflect(ignore)]
         rule: &'static str,
     },
     /// A tear runs along no edge of the cloth.

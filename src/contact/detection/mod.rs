@@ -5,6 +5,7 @@ mod carrying;
 mod caught;
 mod embedded;
 mod margin;
+mod pieces;
 mod pinned_faces;
 mod push_out;
 mod requery;

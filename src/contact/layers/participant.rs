@@ -22,23 +22,7 @@ pub(crate) struct Participant<'a> {
     pub is_fixed: bool,
 }
 
-impl<'a> Participant<'a> {
-    /// A cloth that touches only itself.
-    #[inline]
-    pub fn alone(
-        particles: &'a mut ClothParticles,
-        sheet: &'a Arc<Sheet>,
-        settings: ClothSelfCollision,
-    ) -> Self {
-        Self {
-            particles,
-            sheet,
-            to_common: None,
-            settings,
-            is_fixed: false,
-        }
-    }
-
+impl Participant<'_> {
     /// Transforms a point to the common frame (m).
     #[inline]
     pub(super) fn point(&self, point: Vec3) -> Vec3 {

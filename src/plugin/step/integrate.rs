@@ -1,13 +1,18 @@
-//! All sub-steps of a tick.
+//! The system that moves all cloths.
 
 use bevy::ecs::system::{Query, ResMut};
 
 use super::{
-    island::integrate_together,
-    seams::SewnSeams,
-    tick::{Colliders, IntegrateQuery},
+    member::{Member, members},
+    seams::{Sewing, SewnSeams},
+    substeps::simulate,
+    tick::{Colliders, IntegrateQuery, IntegrateQueryItem},
 };
-use crate::plugin::{naming::Named, prepare::Islands, threads::threads};
+use crate::plugin::{
+    naming::Named,
+    prepare::{Island, Islands},
+    threads::{MIN_TO_SPLIT, threads},
+};
 
 /// Cloths whose particles × sub-steps come to less are solved one after the other on this thread.
 const MIN_TO_SHARE: usize = 64 * 64 * 20;
@@ -21,7 +26,7 @@ pub(crate) fn integrate(
     names: Query<Named>,
 ) {
     for island in &mut islands.all {
-        integrate_together(island, &mut cloths, &mut seams, &colliders, &names);
+        simulate_island(island, &mut cloths, &mut seams, &colliders, &names);
     }
     let (mut awake, mut work) = (0, 0);
     for cloth in &cloths {
@@ -36,10 +41,57 @@ pub(crate) fn integrate(
     if awake > 1 && work >= MIN_TO_SHARE && threads() > 1 {
         cloths
             .par_iter_mut()
-            .for_each(|mut cloth| cloth.integrate(&colliders));
+            .for_each(|cloth| simulate_alone(cloth, &colliders, &names));
     } else {
         cloths
             .iter_mut()
-            .for_each(|mut cloth| cloth.integrate(&colliders));
+            .for_each(|cloth| simulate_alone(cloth, &colliders, &names));
+    }
+}
+
+/// Cloths that may touch each other, or that are sewn together.
+fn simulate_island(
+    island: &mut Island,
+    cloths: &mut Query<IntegrateQuery>,
+    seams: &mut SewnSeams,
+    colliders: &Colliders,
+    names: &Query<Named>,
+) {
+    let mut members = members(cloths, &island.entities);
+    for Member { cloth, .. } in &mut members {
+        cloth.built.solver.set_partitions(1);
+    }
+    let mut sewing = Sewing::begin(island, &members, seams);
+    let contact = &mut island.contact;
+    sewing.tell(contact, &members);
+    simulate(&mut members, &mut sewing, Some(contact), colliders, names);
+}
+
+/// A cloth that touches no other.
+fn simulate_alone(cloth: IntegrateQueryItem, colliders: &Colliders, names: &Query<Named>) {
+    // Cloths that may touch each other have been moved.
+    if cloth.scratch.is_in_island {
+        return;
+    }
+    let Some(mut member) = Member::of(cloth) else {
+        return;
+    };
+    // Asleep.
+    if member.step.is_none() {
+        return;
+    }
+    let cloth = &mut member.cloth;
+    let partitions = match cloth.particles.len() < MIN_TO_SPLIT {
+        true => 1,
+        false => threads(),
+    };
+    cloth.built.solver.set_partitions(partitions);
+    let touches_itself = (cloth.scratch.self_collision).is_some_and(|of| of.with_itself);
+    let mut contact = touches_itself.then(|| cloth.scratch.mutual.take().unwrap_or_default());
+    let mut sewing = Sewing::default();
+    let (members, layers) = (std::slice::from_mut(&mut member), contact.as_deref_mut());
+    simulate(members, &mut sewing, layers, colliders, names);
+    if contact.is_some() {
+        member.cloth.scratch.mutual = contact;
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct Member<'w, 's> {
     /// `None` of one that sleeps.
     pub step: Option<TickStep>,
     pub to_common: Option<Isometry3d>,
+    /// Whether its tick is done again if it takes too few sub-steps.
+    pub may_repeat: bool,
 }
 
 /// The cloths of an island that are moved in the tick, and those that sleep in it. Those that touch cloth come first.
@@ -29,28 +31,8 @@ pub(super) fn members<'w, 's>(
     cloths: &'w mut Query<'_, 's, IntegrateQuery>,
     entities: &EntityIndexSet,
 ) -> Few<Member<'w, 's>> {
-    let mut members = Few::new();
-    for mut cloth in cloths.iter_many_unique_mut(entities) {
-        let is_asleep = cloth.state.rest.is_asleep();
-        // One that sleeps stays prepared while nothing changes.
-        let step = match is_asleep {
-            true => cloth.scratch.step,
-            false => cloth.scratch.step.take(),
-        };
-        let Some(step) = step else {
-            continue;
-        };
-        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
-            continue;
-        }
-        cloth.stats.is_asleep = is_asleep;
-        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
-        members.push(Member {
-            cloth,
-            step: (!is_asleep).then_some(step),
-            to_common: None,
-        });
-    }
+    let each = cloths.iter_many_unique_mut(entities);
+    let mut members: Few<Member> = each.filter_map(Member::of).collect();
     members.sort_by_key(|member| member.cloth.scratch.self_collision.is_none());
     let first = members.first().map(|first| first.cloth.frame.isometry());
     for member in members.iter_mut().skip(1) {
@@ -70,7 +52,29 @@ pub(super) fn participants<'a>(members: &'a mut [Member]) -> Few<Participant<'a>
     .collect()
 }
 
-impl Member<'_, '_> {
+impl<'w, 's> Member<'w, 's> {
+    /// A cloth, unless it is not moved in the tick.
+    pub fn of(mut cloth: IntegrateQueryItem<'w, 's>) -> Option<Self> {
+        let is_asleep = cloth.state.rest.is_asleep();
+        // One that sleeps stays prepared while nothing changes. Another is not moved again before it is prepared again.
+        let step = match is_asleep {
+            true => cloth.scratch.step,
+            false => cloth.scratch.step.take(),
+        }?;
+        // A schedule may run without time passing.
+        if !cloth.built.matches(&cloth.particles) || step.seconds == 0.0 {
+            return None;
+        }
+        cloth.stats.is_asleep = is_asleep;
+        (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+        Some(Self {
+            may_repeat: !is_asleep && cloth.may_repeat(),
+            cloth,
+            step: (!is_asleep).then_some(step),
+            to_common: None,
+        })
+    }
+
     /// As a seam sees it.
     pub fn sewn(&mut self, to_common: Option<Isometry3d>) -> SeamCloth<'_> {
         SeamCloth {

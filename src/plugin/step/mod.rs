@@ -4,10 +4,10 @@
 //! statistics, and the pushes on bodies.
 
 mod integrate;
-mod island;
 mod member;
 mod push;
 mod seams;
+mod substeps;
 mod tick;
 
 pub(crate) use integrate::integrate;

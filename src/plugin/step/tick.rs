@@ -1,4 +1,4 @@
-//! All sub-steps of a cloth's tick.
+//! A cloth in its tick: what each sub-step does to it, and what the tick leaves.
 
 use bevy::{
     ecs::{
@@ -8,23 +8,19 @@ use bevy::{
         system::Query,
     },
     math::{Isometry3d, Vec3},
-    platform::time::Instant,
 };
 
 use crate::{
     cloth::ClothParticles,
     contact::{
-        BodyChange, ClothLayers, ClothSelfCollision, ColliderShape, MovingCollider, MutualContact,
-        Participant,
+        BodyChange, ClothLayers, ClothSelfCollision, ColliderShape, MovingCollider, Participant,
     },
     hierarchy::Core,
     plugin::{
         authoring::Carried,
-        clock::milliseconds_since,
         frame::ClothFrame,
         prepare::ColliderMotion,
         state::{ClothBuilt, ClothContacts, ClothScratch, ClothState, ClothStats, RestsOn},
-        threads::{MIN_TO_SPLIT, threads},
     },
     solver::{LimitInputs, Stretch, SubStep, Substepping, TickStep},
 };
@@ -58,33 +54,6 @@ pub(crate) type Colliders<'w, 's> = Query<
 >;
 
 impl IntegrateQueryItem<'_, '_> {
-    pub fn integrate(&mut self, colliders: &Colliders) {
-        // Cloths that may touch each other have been moved.
-        if self.scratch.is_in_island {
-            return;
-        }
-        // Taken: a cloth that is not prepared again does not move again.
-        let Some(step) = self.scratch.step.take() else {
-            return;
-        };
-        // A schedule may run without time passing.
-        if !self.built.matches(&self.particles) || step.seconds == 0.0 {
-            return;
-        }
-        let is_asleep = self.state.rest.is_asleep();
-        self.stats.is_asleep = is_asleep;
-        if is_asleep {
-            // It stays prepared while nothing changes.
-            self.scratch.step = Some(step);
-            self.stats.integrate_ms = 0.0;
-            self.stats.substeps = 0;
-            return;
-        }
-        let start = Instant::now();
-        self.solve(step, colliders);
-        self.finish(milliseconds_since(start));
-    }
-
     /// Takes over the results of a tick; its sub-steps took this time (ms).
     pub(crate) fn finish(&mut self, milliseconds: f64) {
         self.stats.integrate_ms = milliseconds;
@@ -148,45 +117,16 @@ impl IntegrateQueryItem<'_, '_> {
         }
     }
 
-    /// Simulates the tick, and repeats it with more sub-steps while the tolerance needs them.
-    fn solve(&mut self, mut step: TickStep, colliders: &Colliders) {
-        let substepping = self.scratch.substepping;
-        let partitions = if self.particles.len() < MIN_TO_SPLIT {
-            1
-        } else {
-            threads()
-        };
-        self.built.solver.set_partitions(partitions);
-        let may_repeat = match substepping {
+    /// Whether a tick is done again with more sub-steps, if one takes too few.
+    pub(crate) fn may_repeat(&self) -> bool {
+        match self.scratch.substepping {
             Substepping::Fixed(_) => false,
             Substepping::Automatic => {
-                let near = self.scratch.near.iter();
-                near.map(|(_, near)| &near.shape)
-                    .any(ColliderShape::has_edges)
+                let mut near = self.scratch.near.iter();
+                near.any(|(_, near)| near.shape.has_edges())
             }
             Substepping::Adaptive { .. } => true,
-        };
-        if may_repeat {
-            self.scratch.backup.copy_from(&self.particles);
         }
-        self.stats.substeps = 0;
-        loop {
-            let mut stretch = self.advance(step, colliders);
-            stretch.load_substeps = self.load_substeps(&step);
-            stretch.contact_substeps = self.contact_substeps(&step, &stretch);
-            self.stats.substeps += step.substeps;
-            self.state.stretch = stretch;
-            let more = self.state.control.observe(substepping, stretch);
-            let Some(more) = more.filter(|_| may_repeat) else {
-                break;
-            };
-            step.substeps = more;
-            self.restart();
-            if let Some(mutual) = &mut self.scratch.mutual {
-                mutual.forget();
-            }
-        }
-        self.scratch.limit_inputs = Some(self.limit_inputs(step));
     }
 
     /// Goes back to where the tick began.
@@ -198,8 +138,8 @@ impl IntegrateQueryItem<'_, '_> {
         self.built.solver.recall_creases(&self.state.creases);
     }
 
-    /// The quantities of the tick's last run of sub-steps that are compared with the limits.
-    pub(crate) fn limit_inputs(&self, step: TickStep) -> LimitInputs {
+    /// The quantities of the tick's last run of sub-steps that are compared with the limits; layers have `lost` so many pairs.
+    pub(crate) fn limit_inputs(&self, step: TickStep, lost: u32) -> LimitInputs {
         let spacing = self.built.surface().spacing();
         let root = self
             .built
@@ -219,9 +159,8 @@ impl IntegrateQueryItem<'_, '_> {
             };
             LimitInputs::travel_in_radii(collider.shape.radius()?, travel / count, spacing.longest)
         });
-        let mutual = self.scratch.mutual.as_ref();
         LimitInputs {
-            lost: mutual.map_or(0, |mutual| mutual.lost()),
+            lost,
             embedded: self.scratch.detection.embedded(),
             collider_travel: travels.fold(0.0, f32::max),
             stretch: self.state.stretch.structural,
@@ -268,61 +207,6 @@ impl IntegrateQueryItem<'_, '_> {
         Substepping::for_contact(stretch.structural - given, depths, step.substeps)
     }
 
-    /// One way through the sub-steps.
-    fn advance(&mut self, step: TickStep, colliders: &Colliders) -> Stretch {
-        self.recall_carriers(step.substeps.max(1));
-        let mut alone = self.begin_alone();
-        let layers = self.layers.copied().unwrap_or_default();
-        let ClothScratch {
-            pins,
-            near,
-            near_set,
-            detection,
-            contact_settings,
-            constraints,
-            carried,
-            ..
-        } = &mut *self.scratch;
-        let built = &mut *self.built;
-        let (sheet, dt) = (&built.shared, step.seconds / step.substeps.max(1) as f32);
-        let place = Place {
-            frame: self.frame,
-            carried: *carried,
-            layers,
-        };
-        let stretch =
-            built
-                .solver
-                .advance(&mut self.particles, step, pins, |particles, mut substep| {
-                    let settings = *contact_settings;
-                    let is_held =
-                        !constraints.is_empty() && constraints.hold(particles, &mut substep);
-                    let numbered = |numbered: &mut Vec<(usize, MovingCollider)>| {
-                        add_far(near, near_set, &place, colliders, numbered);
-                    };
-                    let Some((mutual, layers)) = &mut alone else {
-                        return is_held
-                            | detection.respond(particles, &settings, substep, numbered);
-                    };
-                    let sheet = sheet.sheet();
-                    let itself = Participant::alone(particles, sheet, *layers);
-                    mutual.note_before_colliders(&[itself]);
-                    let is_touched = detection.respond(particles, &settings, substep, numbered);
-                    let mut is_pushed = [false];
-                    let itself = Participant::alone(particles, sheet, *layers);
-                    let farthest = mutual.respond(&mut [itself], |_, _| true, dt, &mut is_pushed);
-                    detection.note_push(farthest);
-                    is_held | is_touched | is_pushed[0]
-                });
-        if let Some((mutual, _)) = alone {
-            self.state.layer_substeps = mutual.wanted_substeps();
-            self.stats.layer_pairs = mutual.pairs();
-            self.stats.layer_searches = mutual.searches();
-            self.scratch.mutual = Some(mutual);
-        }
-        stretch
-    }
-
     /// Restores the bodies that particles carried as the last tick ended.
     pub(crate) fn recall_carriers(&mut self, substeps: u32) {
         let ClothScratch {
@@ -334,17 +218,6 @@ impl IntegrateQueryItem<'_, '_> {
             let own = carriers.iter().filter(move |(entity, _)| *entity == body);
             own.map(|(_, carrier)| *carrier)
         });
-    }
-
-    /// Begins contact of a cloth with itself, if it has any.
-    fn begin_alone(&mut self) -> Option<(Box<MutualContact>, ClothSelfCollision)> {
-        let settings = self.scratch.self_collision?;
-        if !settings.with_itself {
-            return None;
-        }
-        let mut mutual = self.scratch.mutual.take().unwrap_or_default();
-        mutual.begin(&[self.participant(settings, None)], |_, _| true);
-        Some((mutual, settings))
     }
 
     /// The cloth, as contact of cloth with cloth sees it.

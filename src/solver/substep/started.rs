@@ -142,7 +142,7 @@ impl Solver {
     }
 
     /// How many partitions a tick's sub-steps are cut into.
-    pub(super) fn partitions_of(&self, tick: &StartedTick) -> usize {
+    pub(crate) fn partitions_of(&self, tick: &StartedTick) -> usize {
         match &self.forces {
             Some(forces) if tick.is_explicit => forces.partitions(),
             _ => self.partitions(),
