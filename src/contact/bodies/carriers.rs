@@ -30,7 +30,7 @@ const MAX_LOAD: f32 = 3.0e3;
 
 /// Weight of the last push in the mean of a particle's pushes. Without that mean, all carriers had loads in proportion to their own masses.
 /// Corners of triangles that the body hardly presses then hung from it: balls of four times a cloth's mass jittered and wandered.
-const NEWEST: f32 = 0.7;
+const NEWEST: f32 = 0.5;
 
 /// A particle that carries a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
