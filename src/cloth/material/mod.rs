@@ -37,6 +37,7 @@ pub use stiffening::ClothStiffening;
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 pub struct ClothMaterial {
     /// Mass per area (kg/m²), positive.
     pub areal_density: f32,
@@ -74,6 +75,7 @@ pub struct ClothMaterial {
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 pub struct ClothWeft {
     /// Compliance (m/N), zero or more.
     pub stretch_compliance: f32,

@@ -22,6 +22,7 @@ use crate::cloth::error::ClothError;
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serialize", serde(default))]
 pub struct ClothStiffening {
     /// The strain from which on it is stiffer: elongation over length at rest. Positive, at most 10.
     pub strain: f32,

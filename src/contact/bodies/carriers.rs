@@ -2,8 +2,8 @@
 //!
 //! A contact alone gives a body, in a sub-step, at most the momentum of the particles that it pushes. A heavy body on
 //! light cloth would displace them far before they held it. So while the springs are solved, each particle that the
-//! body has just pushed carries a part `μᵢ` of its mass, a [`Load`]: the more, the harder it is pressed. The springs move it by `Δᵢ`, and the body receives
-//! the impulse `μᵢ Δᵢ` there. Momentum and angular momentum are conserved.
+//! body has just pushed carries a part `μᵢ` of its mass, a [`Load`]: the more, the harder it is pressed. The springs
+//! move it by `Δᵢ`, and the body receives the impulse `μᵢ Δᵢ` there. Momentum and angular momentum are conserved.
 //!
 //! Let J be the motion of the body's surface at a point per unit of velocity and spin, and W its inverse mass matrix.
 //! The body then has the energy `½ ‖Σ Jᵢᵀ μᵢ Δᵢ‖²_W ≤ ½ Σ μᵢ Δᵢ² · K Σ μᵢ`. K is the largest inverse mass of the body
@@ -28,8 +28,8 @@ const REMEMBERED: u8 = 3;
 /// Largest ratio of a particle's load to its own mass: chains hold larger ones badly.
 const MAX_LOAD: f32 = 3.0e3;
 
-/// Weight of the last push in the mean of a particle's pushes. Without that mean, all carriers had loads in proportion to their own masses.
-/// Corners of triangles that the body hardly presses then hung from it: balls of four times a cloth's mass jittered and wandered.
+/// Weight of the last push in the mean of a particle's pushes. Loads go by these means. If they went by the particles' own masses,
+/// corners of triangles that the body hardly presses would hang from it. Balls of four times a cloth's mass then jitter.
 const NEWEST: f32 = 0.5;
 
 /// A particle that carries a body.
@@ -41,7 +41,7 @@ pub(crate) struct Carrier {
     normal: Vec3,
     /// Number of sub-steps left.
     left: u8,
-    /// How far the body has pushed it in the last sub-steps, in the mean (m): the load goes where the body presses.
+    /// A mean of how far the body has pushed it in the last sub-steps, by friction too (m). Only ratios of these count.
     pressed: f32,
 }
 
@@ -178,7 +178,13 @@ impl Carriers {
             0.0
         };
         let most = (mass.inverse_mass + largest).recip();
+        // Without a push it is infinite, and there are no loads.
         let part = most / pressed;
+        let part = if pressed > 0.0 {
+            part.min(f32::MAX)
+        } else {
+            part
+        };
         let from = particles.loads_mut().len();
         if part.is_finite() && part > 0.0 {
             for &Carrier {

@@ -229,7 +229,7 @@ mod tests {
     use super::*;
     use crate::{cloth::Cloth, contact::tests::Random, meshes};
 
-    /// The particles of one collider after the other, found in any order and more than once, on a grid and on a mesh: each is a
+    /// Particles are found for one collider after the other, in any order and more than once, on a grid and on a mesh. Each is a
     /// candidate once, in the cloth's order, in its lane of its block. The corners of its triangles are in blocks, too, unless one
     /// of the triangles that meet it is left out.
     #[test]

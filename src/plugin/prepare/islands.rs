@@ -89,9 +89,7 @@ pub(crate) fn find_islands(
             });
         }
     }
-    std::mem::swap(&mut islands.all, &mut islands.before);
-    let gone = islands.all.drain(..).map(Island::emptied);
-    islands.spare.extend(gone);
+    islands.recycle();
     if islands.spans.len() < 2 && seams.active.is_empty() {
         return;
     }
@@ -104,6 +102,13 @@ pub(crate) fn find_islands(
 }
 
 impl Islands {
+    /// Begins a tick: those of the last one are now before, and the memory of earlier ones is spare.
+    fn recycle(&mut self) {
+        std::mem::swap(&mut self.all, &mut self.before);
+        let gone = self.all.drain(..).map(Island::emptied);
+        self.spare.extend(gone);
+    }
+
     /// Cloths that are each alone, to be joined.
     pub fn begin(&mut self, spans: impl Iterator<Item = Span>) {
         self.spans.clear();
@@ -367,8 +372,7 @@ mod tests {
             islands.begin(unasked);
             islands.join(bounds);
             islands.sew(&Seams::default());
-            let gone = islands.all.drain(..).map(Island::emptied);
-            islands.spare.extend(gone);
+            islands.recycle();
             islands.collect(&Seams::default());
             let found: Vec<_> = islands.all.iter().map(|of| of.cloths.clone()).collect();
             assert_eq!(found, by_brute_force(&spans), "case {case}");

@@ -78,7 +78,7 @@ impl GameQueryItem<'_, '_> {
 }
 
 /// The game's settings of a cloth in a tick, checked. Removed components count as their defaults. A cloth at rest wakes when one
-/// of them changes. Its particles, its place, the air and what it is built from are compared elsewhere.
+/// of these values changes. Its particles, its place, the air and what it is built from are compared elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Inputs {

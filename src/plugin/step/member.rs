@@ -10,13 +10,13 @@ use smallvec::SmallVec;
 use super::tick::{IntegrateQuery, IntegrateQueryItem};
 use crate::{
     contact::Participant,
-    solver::{SeamCloth, TickStep},
+    solver::{SeamCloth, Substepping, TickStep},
 };
 
-/// One for each cloth of an island. It allocates nothing for up to eight.
+/// One for each cloth or seam of an island. Up to eight are not on the heap.
 pub(super) type Few<T> = SmallVec<[T; 8]>;
 
-/// A cloth of an island, in its tick.
+/// A cloth in its tick, alone or in an island.
 pub(super) struct Member<'w, 's> {
     pub cloth: IntegrateQueryItem<'w, 's>,
     /// `None` of one that sleeps.
@@ -33,6 +33,11 @@ pub(super) fn members<'w, 's>(
 ) -> Few<Member<'w, 's>> {
     let each = cloths.iter_many_unique_mut(entities);
     let mut members: Few<Member> = each.filter_map(Member::of).collect();
+    // Only a tolerance is worth the search for layers that a repetition takes.
+    for member in &mut members {
+        let substepping = member.cloth.scratch.substepping;
+        member.may_repeat &= matches!(substepping, Substepping::Adaptive { .. });
+    }
     members.sort_by_key(|member| member.cloth.scratch.self_collision.is_none());
     let first = members.first().map(|first| first.cloth.frame.isometry());
     for member in members.iter_mut().skip(1) {
@@ -56,7 +61,7 @@ impl<'w, 's> Member<'w, 's> {
     /// A cloth, unless it is not moved in the tick.
     pub fn of(mut cloth: IntegrateQueryItem<'w, 's>) -> Option<Self> {
         let is_asleep = cloth.state.rest.is_asleep();
-        // One that sleeps stays prepared while nothing changes. Another is not moved again before it is prepared again.
+        // One that sleeps stays prepared while nothing changes. Any other has to be prepared again before it moves again.
         let step = match is_asleep {
             true => cloth.scratch.step,
             false => cloth.scratch.step.take(),

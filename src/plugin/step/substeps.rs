@@ -41,6 +41,7 @@ pub(super) fn simulate(
             backup.copy_from(&member.cloth.particles);
         }
     }
+    // A member may want more than it would take alone, and less than the island has taken.
     while let Some(more) = advance(
         members,
         sewing,
@@ -48,7 +49,9 @@ pub(super) fn simulate(
         contact.as_deref_mut(),
         colliders,
         names,
-    ) {
+    )
+    .filter(|more| *more > substeps)
+    {
         substeps = more;
         for member in members.iter_mut().filter(|member| member.step.is_some()) {
             member.cloth.restart();
@@ -77,6 +80,16 @@ pub(super) fn simulate(
     }
 }
 
+/// What a run through the sub-steps keeps of each member.
+#[derive(Default)]
+struct Run {
+    ticks: Few<Option<StartedTick>>,
+    /// The sub-step that it is moved by.
+    moved: Few<Option<SubStep>>,
+    /// Whether its layers were pushed in the sub-step.
+    is_pushed: Few<bool>,
+}
+
 /// A single run through the sub-steps of all. Returns the number that one of them needs, if these were too few.
 fn advance(
     members: &mut [Member],
@@ -87,7 +100,10 @@ fn advance(
     names: &Query<Named>,
 ) -> Option<u32> {
     let seconds = members.iter().find_map(|member| member.step)?.seconds;
-    let mut ticks = begin(members, substeps);
+    let mut run = Run {
+        ticks: begin(members, substeps),
+        ..Default::default()
+    };
     let layers = members.iter().map(|member| member.cloth.layers);
     let layers: Few<ClothLayers> = layers.map(|of| of.copied().unwrap_or_default()).collect();
     let meets = |a: usize, b: usize| layers[a].interacts_with(layers[b]);
@@ -95,7 +111,7 @@ fn advance(
         contact.begin(&participants(members), meets);
         warn_of_inside(members, contact, names);
     }
-    let started = members.iter().zip(&ticks);
+    let started = members.iter().zip(&run.ticks);
     let partitions =
         started.filter_map(|(of, tick)| Some(of.cloth.built.solver.partitions_of(tick.as_ref()?)));
     let partitions = partitions.max().unwrap_or(1);
@@ -106,7 +122,7 @@ fn advance(
             let contact = contact.as_deref_mut();
             substep(
                 members,
-                &mut ticks,
+                &mut run,
                 sewing,
                 contact,
                 [time, dt],
@@ -114,38 +130,40 @@ fn advance(
                 colliders,
             );
         }
-    });
-    end(members, ticks, substeps)
+        end(members, run.ticks, substeps)
+    })
 }
 
 /// A sub-step of all, in this order: springs, poses, seams, colliders, layers. It ends at a time of the tick, and takes `dt` (s).
 fn substep(
     members: &mut [Member],
-    ticks: &mut [Option<StartedTick>],
+    Run {
+        ticks,
+        moved,
+        is_pushed,
+    }: &mut Run,
     sewing: &mut Sewing,
-    contact: Option<&mut MutualContact>,
+    mut contact: Option<&mut MutualContact>,
     [time, dt]: [f32; 2],
     meets: &impl Fn(usize, usize) -> bool,
     colliders: &Colliders,
 ) {
+    moved.clear();
     let each = members.iter_mut().zip(&mut *ticks);
-    let mut moved: Few<Option<SubStep>> = each
-        .map(|(Member { cloth, .. }, tick)| {
-            let tick = tick.as_mut()?;
-            let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
-            let mut substep = solver.substep(&mut cloth.particles, pins, tick)?;
-            if cloth.hold(&mut substep) {
-                tick.note_push(&mut cloth.particles);
-            }
-            Some(substep)
-        })
-        .collect();
-    sewing.close(members, ticks, &mut moved, time, dt);
-    let mut contact = contact;
+    moved.extend(each.map(|(Member { cloth, .. }, tick)| {
+        let tick = tick.as_mut()?;
+        let (solver, pins) = (&mut cloth.built.solver, &cloth.scratch.pins);
+        let mut substep = solver.substep(&mut cloth.particles, pins, tick)?;
+        if cloth.hold(&mut substep) {
+            tick.note_push(&mut cloth.particles);
+        }
+        Some(substep)
+    }));
+    sewing.close(members, ticks, moved, time, dt);
     if let Some(contact) = &mut contact {
         contact.note_before_colliders(&participants(members));
     }
-    for ((member, tick), substep) in members.iter_mut().zip(&mut *ticks).zip(&moved) {
+    for ((member, tick), substep) in members.iter_mut().zip(&mut *ticks).zip(&*moved) {
         if let (Some(tick), Some(substep)) = (tick, *substep)
             && member.cloth.touch(substep, colliders)
         {
@@ -155,9 +173,10 @@ fn substep(
     let Some(contact) = contact else {
         return;
     };
-    let mut is_pushed: Few<bool> = members.iter().map(|_| false).collect();
-    let farthest = contact.respond(&mut participants(members), meets, dt, &mut is_pushed);
-    for ((member, tick), is_pushed) in members.iter_mut().zip(ticks).zip(&is_pushed) {
+    is_pushed.clear();
+    is_pushed.resize(members.len(), false);
+    let farthest = contact.respond(&mut participants(members), meets, dt, is_pushed);
+    for ((member, tick), is_pushed) in members.iter_mut().zip(ticks).zip(is_pushed) {
         if let Some(tick) = tick
             && *is_pushed
         {

@@ -53,8 +53,16 @@ use wind::LocalWind;
 /// with 80; four cost 13 % of a tick instead of 4 (64²).
 const LONGEST: f32 = 0.01;
 
-/// An impulse on a row of particles that is not below this (N s) is not counted: it belongs to no game, and `f32` may not hold it.
+/// Larger impulses (N s) on a row of a grid, or on a mesh, are not counted: they belong to no game, and `f32` may not hold them.
 const LARGEST_IMPULSE: f64 = 1.0e25;
+
+/// An impulse (N s), or none if it is NaN or too large.
+fn counted(given: DVec3) -> DVec3 {
+    match given.abs().max_element() < LARGEST_IMPULSE {
+        true => given,
+        false => DVec3::ZERO,
+    }
+}
 
 /// The air around a cloth, in the cloth's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -194,7 +202,8 @@ impl Airflow {
         };
         let (weight, seconds) = (weight.into(), self.substep.into());
         let (gas, areas) = (&mut self.memory.gas, &self.areas);
-        self.impulse += gas.press(amount, self.enclosed, blocks, areas, weight, seconds);
+        let given = gas.press(amount, self.enclosed, blocks, areas, weight, seconds);
+        self.impulse += counted(given);
     }
 
     /// Begins a tick of `seconds` in this many sub-steps.
@@ -234,10 +243,7 @@ impl Airflow {
             let mut sum = [[0.0; LANES]; 3];
             (kernels.air_impulse)(row, linearized, places, seconds, &mut sum);
             let given = DVec3::from(sum.map_inline(|lanes| lanes.into_iter().map(f64::from).sum()));
-            // Not so if it is NaN.
-            if given.abs().max_element() < LARGEST_IMPULSE {
-                self.impulse += given;
-            }
+            self.impulse += counted(given);
         }
         self.memory.force = (self.impulse - before).as_vec3() / seconds;
         self.since = 0;

@@ -192,8 +192,8 @@ fn every_instruction_set_and_thread_count_gives_the_same_bits() {
     }
 }
 
-/// Of particles up to 10¹⁸ m apart, the limit of valid ones, at up to 10¹⁸ m a sub-step, as light and as heavy as they may be; a
-/// grid and a mesh.
+/// Particles are up to 10¹⁸ m apart, the limit of valid ones, and move by up to that in a sub-step. Some are as light or as heavy as
+/// they may be. The gas in a grid has no volume. Near places and slow particles are pushed.
 #[test]
 fn the_air_of_any_place_and_speed_is_finite() {
     let mesh = meshes::irregular(0.9, 0.7, 0.1, 0.3);
@@ -201,7 +201,16 @@ fn the_air_of_any_place_and_speed_is_finite() {
     let of_mesh = ClothParticles::at_rest(&mesh, &ClothMaterial::COTTON).expect("a material");
     for (surface, particles) in [crumpled(9, 7), (mesh, of_mesh)] {
         let each = (0..18 * 18).flat_map(|at| [1.0e-45, 2.0e-39, 1.0e-29, 1.0e15].map(|w| (at, w)));
-        for (at, inverse_mass) in each {
+        let pressures = [
+            None,
+            Some(ClothPressure::Gauge(500.0)),
+            Some(ClothPressure::Gas {
+                volume: 1.0,
+                outside: 1.0e5,
+            }),
+        ];
+        for ((at, inverse_mass), pressure) in each.flat_map(|one| pressures.map(|of| (one, of))) {
+            let air = Air { pressure, ..AIR };
             let (far, fast) = (at / 18, at % 18);
             let mut particles = particles.clone();
             shake(&mut particles);
@@ -216,7 +225,7 @@ fn the_air_of_any_place_and_speed_is_finite() {
                         .expect("it exists");
                 }
             }
-            let (kernels, mut airflow) = (SimdLevel::Auto.kernels(), Airflow::new(&surface, AIR));
+            let (kernels, mut airflow) = (SimdLevel::Auto.kernels(), Airflow::new(&surface, air));
             airflow.begin(1.0 / 64.0, 4);
             airflow.before_substep(0, &particles, &kernels);
             for index in 0..particles.len() {
@@ -226,6 +235,7 @@ fn the_air_of_any_place_and_speed_is_finite() {
                     view[X + axis + slot.lane] += view[DX + axis + slot.lane];
                 }
             }
+            airflow.press(particles.blocks_mut(), 1.0e-5);
             airflow.settle(&particles, &kernels);
             let is_finite = |l: &LinearizedDrag| {
                 let both = l.push.iter().chain(&l.drag).flatten();
@@ -236,6 +246,9 @@ fn the_air_of_any_place_and_speed_is_finite() {
                 airflow.linearized().iter().all(is_finite) && impulse.is_finite(),
                 "10^{far} m, 10^{fast} m a sub-step, {inverse_mass} per kg: {impulse}"
             );
+            let is_pushed = |l: &LinearizedDrag| l.push.iter().flatten().any(|push| *push != 0.0);
+            let is_ordinary = far == 0 && fast == 0;
+            assert!(!is_ordinary || airflow.linearized().iter().any(is_pushed));
         }
     }
 }

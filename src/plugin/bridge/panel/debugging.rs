@@ -64,13 +64,18 @@ impl Times {
     }
 }
 
-/// The folded rows of one cloth.
-pub(super) fn show(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
+/// The folded rows of one cloth. `gravity` is that of all cloths.
+pub(super) fn show(
+    ui: &mut Ui,
+    cloth: &mut PanelClothItem,
+    gravity: ClothGravity,
+    commands: &mut Commands,
+) {
     show_figures(ui, cloth);
     show_gizmos(ui, cloth, commands);
     show_search(ui, cloth);
     let mut settings = *cloth.settings;
-    show_settings(ui, &mut settings);
+    show_settings(ui, &mut settings, gravity);
     cloth.settings.set_if_neq(settings);
     let mut material = *cloth.material;
     show_material(ui, &mut material);
@@ -201,7 +206,7 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
     cloth.narrow_phase.set_if_neq(narrow_phase);
 }
 
-fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
+fn show_settings(ui: &mut Ui, settings: &mut ClothSettings, of_all: ClothGravity) {
     show_substeps(ui, &mut settings.substepping);
     let mut is_first = settings.order == TimeOrder::First;
     ui.checkbox(&mut is_first, "Verlet as in the paper").on_hover_text(
@@ -217,7 +222,8 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
     ui.checkbox(&mut settings.sleeps, "sleeps at rest")
         .on_hover_text("A cloth at rest is not simulated until something disturbs it");
     let mut millimetres = 1.0e3 * settings.particle_radius;
-    let tip = "Radius of each particle (mm): how far from a collider the cloth lies";
+    let tip =
+        "Radius of each particle (mm): how far from a collider the cloth lies. A rope has its own";
     if slide(
         ui,
         "radius, mm",
@@ -231,7 +237,7 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings) {
     let mut is_own = settings.gravity.is_some();
     ui.checkbox(&mut is_own, "own gravity")
         .on_hover_text("Gravity for this cloth alone, in place of that of all");
-    let own = settings.gravity.unwrap_or(ClothGravity::default().0);
+    let own = settings.gravity.unwrap_or(of_all.0);
     settings.gravity = is_own.then_some(own);
     if let Some(gravity) = &mut settings.gravity {
         let mut down = -gravity.y;

@@ -216,12 +216,12 @@ impl Shown<'_, '_> {
         for mut cloth in &mut self.cloths {
             ui.push_id(cloth.entity, |ui| {
                 if few {
-                    debugging::show(ui, &mut cloth, &mut self.commands);
+                    debugging::show(ui, &mut cloth, *self.gravity, &mut self.commands);
                 } else {
                     CollapsingHeader::new(cloth.name())
                         .id_salt("debugging")
                         .show_unindented(ui, |ui| {
-                            debugging::show(ui, &mut cloth, &mut self.commands);
+                            debugging::show(ui, &mut cloth, *self.gravity, &mut self.commands);
                         });
                 }
             });

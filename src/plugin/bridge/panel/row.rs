@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, Response, Slider, SliderClamping, Ui};
 
 /// Width of a name, of a slider, and of the value beside it (logical pixels).
-const NAME: f32 = 84.0;
-const SLIDER: f32 = 110.0;
+pub(super) const NAME: f32 = 84.0;
+pub(super) const SLIDER: f32 = 110.0;
 const VALUE: f32 = 62.0;
 
 /// Largest height of an open menu (logical pixels): all searches fit.

@@ -286,17 +286,20 @@ fn showing_a_value_does_not_change_it() {
         damping: 0.999,
         friction: 7.0,
     };
-    let cloth = app.world_mut().spawn((Cloth::default(), odd)).id();
+    let settings = ClothSettings {
+        particle_radius: 0.077_7,
+        gravity: Some(Vec3::new(1.0, 400.0, -3.0)),
+        ..default()
+    };
+    let cloth = (Cloth::default(), odd, settings);
+    let cloth = app.world_mut().spawn(cloth).id();
     let speed = app.world_mut().spawn(ClothColliderSpeed(1.0e6)).id();
     app.insert_resource(ClothGravity(Vec3::new(1.0, 400.0, -3.0)));
     app.update();
     app.world_mut().clear_trackers();
-    let settings = *app.world().get::<ClothSettings>(cloth).expect("settings");
-    draw(
-        &mut app,
-        &egui::Context::default(),
-        egui::vec2(800.0, 600.0),
-    );
+    let context = egui::Context::default();
+    click_beside(&mut app, &context, "debugging", None, TALL);
+    draw(&mut app, &context, TALL);
     let world = app.world();
     assert_eq!(world.get(cloth), Some(&odd));
     assert_eq!(world.get(cloth), Some(&settings));
@@ -313,10 +316,12 @@ fn showing_a_value_does_not_change_it() {
     );
     let material = world.entity(cloth).get_ref::<ClothMaterial>().expect("one");
     assert!(!material.is_changed(), "not even marked as changed");
+    let settings = world.entity(cloth).get_ref::<ClothSettings>();
+    assert!(!settings.expect("some").is_changed(), "nor its settings");
 }
 
-/// The middle of the sliders, from where their names begin.
-const SLIDER: Option<f32> = Some(84.0 + 8.0 + 60.0);
+/// Two thirds along the sliders, from where their names begin.
+const SLIDER: Option<f32> = Some(row::NAME + 0.75 * row::SLIDER);
 
 /// Clicks that change one field each of a component, and no other. There is one for each field.
 fn each_field_changes<C: Component + Struct + Typed + Clone>(clicks: &[(&str, &str, Option<f32>)]) {
@@ -373,17 +378,27 @@ fn each_setting_can_be_changed() {
 
 #[test]
 fn each_search_and_contact_can_be_chosen() {
-    for method in SearchMethod::ALL {
-        choose_and_see("search", &method.to_string(), method);
+    let methods = SearchMethod::ALL;
+    for (method, other) in methods.into_iter().zip(methods.into_iter().cycle().skip(1)) {
+        choose_and_see("search", &method.to_string(), method, other);
     }
-    for (name, narrow_phase) in NarrowPhase::ALL {
-        choose_and_see("contact by", name, narrow_phase);
+    let phases = NarrowPhase::ALL;
+    for ((name, phase), (_, other)) in phases.into_iter().zip(phases.into_iter().cycle().skip(1)) {
+        choose_and_see("contact by", name, phase, other);
     }
 }
 
-/// Chooses an entry of a menu, of a cloth that has the default.
-fn choose_and_see<C: Component + PartialEq + Debug>(menu: &str, entry: &str, expected: C) {
+/// Chooses an entry of a menu, of a cloth that has another.
+fn choose_and_see<C: Component + PartialEq + Debug>(
+    menu: &str,
+    entry: &str,
+    expected: C,
+    other: C,
+) {
     let (mut app, context) = cloths(1);
+    let mut cloth = app.world_mut().query_filtered::<Entity, With<Cloth>>();
+    let cloth = cloth.single(app.world()).expect("one");
+    app.world_mut().entity_mut(cloth).insert(other);
     click_beside(&mut app, &context, "debugging", None, TALL);
     click_beside(&mut app, &context, menu, SLIDER, TALL);
     let seen = texts_in(&mut app, &context, TALL);
