@@ -173,7 +173,7 @@ fn assert_calm(app: &mut App, [cloth, body]: [Entity; 2], name: &str) {
         let moved = place(app, body).distance(at);
         let particles = particles(app, cloth);
         let speeds = (0..particles.len()).filter_map(|index| particles.velocity(index));
-        let fastest = speeds.map(|speed| speed.length()).fold(0.0, f32::max);
+        let fastest = speeds.map(Vec3::length).fold(0.0, f32::max);
         let is_calm = stats(app, cloth).is_asleep || fastest < 3.0 * GRAVITY * TICK;
         assert!(
             moved < 0.01 && is_calm,
