@@ -145,6 +145,40 @@ fn nothing_that_is_drawn_jumps() {
     }
 }
 
+/// A frozen cloth whose carrier has no place that is a number stays where it was, and says why. It goes on once the carrier has one.
+#[test]
+fn a_carrier_without_a_place_is_a_fault() {
+    for rotation in [
+        Quat::from_xyzw(0.674, 0.733, f32::INFINITY, 0.466),
+        Quat::NAN,
+    ] {
+        let mut app = app();
+        let carrier = app.world_mut().spawn(Transform::default()).id();
+        let attached = ClothAttachments::new([(Pin::Row(0), carrier)]);
+        let cloth = (Cloth::new(9, 9, 0.1), Pins::none(), attached);
+        let cloth = app.world_mut().spawn(cloth).id();
+        tick(&mut app, 5);
+        set(&mut app, cloth, Frozen);
+        tick(&mut app, 2);
+        let frame = |app: &App| {
+            app.world()
+                .get::<ClothFrame>(cloth)
+                .expect("one")
+                .isometry()
+        };
+        let was = frame(&app);
+        change::<Transform>(&mut app, carrier, |place| place.rotation = rotation);
+        tick(&mut app, 2);
+        assert_eq!(frame(&app), was);
+        assert!(app.world().get::<ClothFault>(cloth).is_some());
+        change::<Transform>(&mut app, carrier, |place| *place = Transform::default());
+        set(&mut app, cloth, Full);
+        tick(&mut app, 2);
+        assert!(app.world().get::<ClothFault>(cloth).is_none());
+        assert!(stats(&app, cloth).air_impulse.is_finite() && frame(&app).rotation.is_finite());
+    }
+}
+
 /// What is frozen costs no sub-step and changes no particle. Its world is that of its entity or, where it is attached, of its target, wherever
 /// these go, and so is what is drawn.
 #[test]

@@ -19,13 +19,13 @@ use crate::{
 };
 
 /// Place of the carrier of a cloth whose entity is at `frame`: its first attachment's target if it has one, else the
-/// entity. `None` if that target is gone.
+/// entity. `None` if that target is gone, or has no place.
 fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<Isometry3d> {
     let Some(target) = state.attachments.targets.first() else {
         return Some(frame.isometry());
     };
-    let place = global_transform(&targets.transforms, *target)?;
-    Some(rigid(&place.affine()))
+    let place = global_transform(&targets.transforms, *target)?.affine();
+    place.inverse().is_finite().then(|| rigid(&place))
 }
 
 /// Freezes a cloth: its frame moves with its carrier, and its particles keep their places in the frame. They lose their
@@ -33,7 +33,7 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
 ///
 /// # Errors
 /// [`ClothError::Transform`], [`ClothError::NoTransform`], and [`ClothError::NoTarget`] if the target of the first of
-/// `attachments` is gone.
+/// `attachments` is gone or has no place.
 pub(crate) fn freeze(
     entity: Entity,
     attachments: &[ClothAttachment],
