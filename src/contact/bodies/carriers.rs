@@ -178,15 +178,10 @@ impl Carriers {
             0.0
         };
         let most = (mass.inverse_mass + largest).recip();
-        // Without a push it is infinite, and there are no loads.
-        let part = most / pressed;
-        let part = if pressed > 0.0 {
-            part.min(f32::MAX)
-        } else {
-            part
-        };
+        let part = (most / pressed).min(f32::MAX);
         let from = particles.loads_mut().len();
-        if part.is_finite() && part > 0.0 {
+        // Not so if one is NaN.
+        if pressed > 0.0 && most > 0.0 {
             for &Carrier {
                 slot,
                 normal,

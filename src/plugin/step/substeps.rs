@@ -80,7 +80,7 @@ pub(super) fn simulate(
     }
 }
 
-/// What a run through the sub-steps keeps of each member.
+/// The state of each member in a run through the sub-steps.
 #[derive(Default)]
 struct Run {
     ticks: Few<Option<StartedTick>>,
