@@ -127,7 +127,7 @@ impl Block {
     }
 }
 
-/// Which block and lane each particle of a grid is in.
+/// Which block and lane each particle is in: row by row, of which the last may not be full.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
 #[type_path = "bevy_drape"]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -136,6 +136,19 @@ pub(crate) struct Layout {
     pub rows: u32,
     /// Columns in a strip, and so blocks in a row: even, so that springs in a row have two colours.
     pub strip: u32,
+    /// Particles.
+    count: u32,
+    /// Whether neighbours in rows and columns are corners of cells: those of a whole grid.
+    pub has_cells: bool,
+}
+
+/// Particles one after the other in a lane: those with the indices from `index` on are in the blocks from `block` on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Run {
+    pub lane: usize,
+    pub index: usize,
+    pub block: usize,
+    pub count: usize,
 }
 
 /// A particle's block and lane.
@@ -154,13 +167,32 @@ impl Layout {
             columns,
             rows,
             strip,
+            count: columns.saturating_mul(rows),
+            has_cells: rows > 1,
         }
+    }
+
+    /// The rows of a grid that is torn or mapped, and those of the particles that tears made behind them.
+    pub fn of_torn_grid(columns: u32, count: u32) -> Self {
+        Self {
+            count,
+            has_cells: false,
+            ..Self::new(columns, count.div_ceil(columns.max(1)))
+        }
+    }
+
+    /// Whether its numbers fit each other, as those of a scene file may not.
+    pub fn is_valid(&self) -> bool {
+        let Self { columns, rows, .. } = *self;
+        columns.checked_mul(rows).is_some()
+            && (*self == Self::new(columns, rows)
+                || *self == Self::of_torn_grid(columns, self.count))
     }
 
     /// Number of particles.
     #[inline]
     pub fn len(&self) -> usize {
-        self.columns as usize * self.rows as usize
+        self.count as usize
     }
 
     /// Number of blocks.
@@ -184,7 +216,37 @@ impl Layout {
         self.slot(index / self.columns, index % self.columns)
     }
 
-    /// The column of a lane of a row's block, if the lane holds a particle.
+    /// The index of the particle in a block's lane, if it holds one.
+    #[inline]
+    pub fn index_at(&self, block: usize, lane: usize) -> Option<u32> {
+        let (row, block) = (block as u32 / self.strip, block % self.strip as usize);
+        let index = row * self.columns + self.column(block, lane)?;
+        (index < self.count).then_some(index)
+    }
+
+    /// All particles, lane by lane of each row.
+    pub fn runs(&self) -> impl Iterator<Item = Run> + use<> {
+        let Self {
+            columns,
+            rows,
+            strip,
+            count,
+            ..
+        } = *self;
+        let lanes = (0..rows).flat_map(|row| (0..LANES as u32).map(move |lane| (row, lane)));
+        lanes.filter_map(move |(row, lane)| {
+            let index = row * columns + lane * strip;
+            let end = (row * columns + ((lane + 1) * strip).min(columns)).min(count);
+            (index < end).then(|| Run {
+                lane: lane as usize,
+                index: index as usize,
+                block: (row * strip) as usize,
+                count: (end - index) as usize,
+            })
+        })
+    }
+
+    /// The column of a lane of a row's block, if a whole row has one there.
     #[inline]
     pub fn column(&self, block: usize, lane: usize) -> Option<u32> {
         let column = lane as u32 * self.strip + block as u32;
@@ -196,7 +258,7 @@ impl Layout {
     pub fn slots(&self) -> impl ExactSizeIterator<Item = Slot> + use<> {
         let layout = *self;
         let mut next = (0, 0, 0);
-        (0..self.len()).map(move |_| {
+        (0..self.count as usize).map(move |_| {
             let (row, lane, block) = next;
             let slot = Slot {
                 block: row * layout.strip as usize + block,
@@ -218,18 +280,41 @@ impl Layout {
 mod tests {
     use super::*;
 
+    /// Of whole rows, and with a last row that is not full.
     #[test]
     fn each_particle_has_a_slot_of_its_own() {
         for columns in [1, 2, 7, 8, 9, 16, 31, 32, 33, 48, 64, 65, 100] {
-            let layout = Layout::new(columns, 3);
-            let mut seen = vec![[false; LANES]; layout.blocks()];
-            for (index, slot) in layout.slots().enumerate() {
-                assert_eq!(slot, layout.slot_of(index), "{columns} columns");
-                let column = layout.column(slot.block % layout.strip as usize, slot.lane);
-                assert_eq!(column, Some(index as u32 % columns));
-                assert!(!std::mem::replace(&mut seen[slot.block][slot.lane], true));
+            let torn =
+                [0, 1, columns / 2].map(|more| Layout::of_torn_grid(columns, 3 * columns + more));
+            for layout in [Layout::new(columns, 3)].into_iter().chain(torn) {
+                assert!(layout.is_valid());
+                let mut seen = vec![[None; LANES]; layout.blocks()];
+                for (index, slot) in layout.slots().enumerate() {
+                    assert_eq!(slot, layout.slot_of(index), "{columns} columns");
+                    let column = layout.column(slot.block % layout.strip as usize, slot.lane);
+                    assert_eq!(column, Some(index as u32 % columns));
+                    assert_eq!(seen[slot.block][slot.lane].replace(index as u32), None);
+                }
+                assert_eq!(layout.slots().len(), layout.len());
+                let mut runs = vec![[None; LANES]; layout.blocks()];
+                for Run {
+                    lane,
+                    index,
+                    block,
+                    count,
+                } in layout.runs()
+                {
+                    for at in 0..count {
+                        runs[block + at][lane] = Some((index + at) as u32);
+                    }
+                }
+                assert_eq!(runs, seen);
+                for (block, lanes) in seen.iter().enumerate() {
+                    for (lane, index) in lanes.iter().enumerate() {
+                        assert_eq!(layout.index_at(block, lane), *index);
+                    }
+                }
             }
-            assert_eq!(layout.slots().len(), layout.len());
         }
     }
 

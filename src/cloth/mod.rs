@@ -52,7 +52,7 @@ pub use tears::ClothTears;
 
 pub(crate) use by_particle::ByParticle;
 pub(crate) use cut::Cut;
-pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Slot, View, W, X, Y, Z};
+pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
 pub(crate) use material_map::MaterialFactors;

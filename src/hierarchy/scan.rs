@@ -24,12 +24,11 @@ fn scan_blocks(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<
 #[cold]
 #[inline(never)]
 fn meet(block: &Block, index: usize, layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
-    let (row, place) = (index as u32 / layout.strip, index % layout.strip as usize);
     for lane in 0..LANES {
-        if let Some(column) = layout.column(place, lane)
+        if let Some(particle) = layout.index_at(index, lane)
             && probe.meets(block.position(lane))
         {
-            found.push(row * layout.columns + column);
+            found.push(particle);
         }
     }
 }

@@ -18,7 +18,7 @@ use super::{
     stretch::Stretch,
 };
 use crate::cloth::{
-    Block, DX, DY, DZ, LANES, Layout, MapInline, Spring, SpringKind, SpringList, W, X, Y, Z,
+    Block, DX, DY, DZ, LANES, Layout, MapInline, Slot, Spring, SpringKind, SpringList, W, X, Y, Z,
 };
 
 /// Half of the lanes: as many numbers as a vector has.
@@ -89,6 +89,24 @@ impl ListSolver {
             step_scale: StepScale::default(),
             stiffer: (springs.stiffening.as_ref()).map_or(Stiffer::NONE, Stiffer::of),
             rows: vec![Row::default(); layout.blocks() * LANES + 1],
+        }
+    }
+
+    /// Takes the particles at these places.
+    pub fn load_from(&mut self, slots: &[Slot], blocks: &[Block]) {
+        for (row, slot) in self.rows.iter_mut().zip(slots) {
+            let block = &blocks[slot.block];
+            row.place = block
+                .position(slot.lane)
+                .extend(block.inverse_mass(slot.lane));
+            row.moved = block.displacement(slot.lane).extend(0.0);
+        }
+    }
+
+    /// Moves the particles at these places.
+    pub fn store_to(&self, slots: &[Slot], blocks: &mut [Block]) {
+        for (row, slot) in self.rows.iter().zip(slots) {
+            blocks[slot.block].set_displacement(slot.lane, row.moved.truncate());
         }
     }
 
@@ -193,8 +211,22 @@ impl ListSolver {
         (material, of(median).sqrt())
     }
 
+    /// Solves all springs forward.
+    pub fn solve_there(&mut self, kernels: &Kernels) {
+        let (rows, step_scale) = (&mut self.rows, &self.step_scale);
+        self.chains.solve_there(rows, step_scale, kernels);
+        (kernels.relax_packets_there)(rows, &self.packets, &mut self.pulls, step_scale);
+    }
+
+    /// The same backward, after [`solve_there`](Self::solve_there).
+    pub fn solve_back(&mut self, kernels: &Kernels) {
+        let (rows, step_scale) = (&mut self.rows, &self.step_scale);
+        (kernels.relax_packets_back)(rows, &self.packets, &mut self.pulls, step_scale);
+        self.chains.solve_back(rows, step_scale, kernels);
+    }
+
     /// The largest length over rest length, given where a particle is.
-    fn stretch(&self, square_between: impl Fn(&Spring) -> f32) -> Stretch {
+    pub fn stretch(&self, square_between: impl Fn(&Spring) -> f32) -> Stretch {
         let (mut structural, mut bound) = (1.0_f32, 1.0_f32);
         for spring in &self.springs.springs {
             let ratio = || square_between(spring) / (spring.rest_length * spring.rest_length);
@@ -227,14 +259,9 @@ impl SpringSolver for ListSolver {
     fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> SolvedSubstep {
         let kernels = motion.kernels;
         self.load(blocks);
-        let (rows, packets, step_scale) = (&mut self.rows, &self.packets, &self.step_scale);
-        if self.chains.is_empty() {
-            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);
-        } else {
-            self.chains.solve_there(rows, step_scale, kernels);
-            (kernels.relax_packets_there)(rows, packets, &mut self.pulls, step_scale);
-            (kernels.relax_packets_back)(rows, packets, &mut self.pulls, step_scale);
-            self.chains.solve_back(rows, step_scale, kernels);
+        self.solve_there(kernels);
+        if !self.chains.is_empty() {
+            self.solve_back(kernels);
         }
         self.store(blocks);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
@@ -266,15 +293,20 @@ impl SpringSolver for ListSolver {
 
     fn for_each_tension(&self, visit: &mut dyn FnMut([u32; 2], f32)) {
         let scale = self.step_scale.inverse_weight;
-        self.chains
-            .for_each_pull(|ends, _, _, pull| visit(ends, scale * pull));
+        let Layout { columns, strip, .. } = self.layout;
+        let width = strip * LANES as u32;
+        let particle_of = |row: u32| row / width * columns + row % width;
+        self.chains.for_each_pull(|ends, _, _, pull| {
+            visit(ends.map_inline(particle_of), scale * pull);
+        });
         for (packet, pull) in self.packets.iter().zip(&self.pulls) {
             let [squares, pulls] = [packet.rest_square, *pull].map_inline(|of| of.to_array());
             for at in 0..SPRINGS {
                 // The last packet of a colour is not full.
-                if (packet.from[at] as usize) < self.layout.len() {
+                let ends = [packet.from[at], packet.to[at]];
+                if (ends[0] as usize) + 1 < self.rows.len() {
                     let tension = scale * pulls[at] * squares[at].sqrt();
-                    visit([packet.from[at], packet.to[at]], tension);
+                    visit(ends.map_inline(particle_of), tension);
                 }
             }
         }

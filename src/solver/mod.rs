@@ -87,6 +87,7 @@ mod substepping;
 #[cfg(test)]
 mod tests;
 mod tether;
+mod torn_grid;
 
 #[doc(hidden)]
 pub use air::Air;

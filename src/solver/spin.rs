@@ -73,9 +73,8 @@ impl Spin {
         let mut pinned = blocks
             .filter(|(_, block)| block.view()[W..W + LANES].contains(&0.0))
             .flat_map(|(index, block)| {
-                let in_row = index % layout.strip as usize;
                 let is_pinned = move |lane: &usize| {
-                    block.inverse_mass(*lane) == 0.0 && layout.column(in_row, *lane).is_some()
+                    block.inverse_mass(*lane) == 0.0 && layout.index_at(index, *lane).is_some()
                 };
                 (0..LANES)
                     .filter(is_pinned)

@@ -185,14 +185,20 @@ impl ClothParticles {
         self.len() == 0
     }
 
-    /// Number of particles in a row.
+    /// Number of particles in a row: all of them, unless they are those of a whole grid.
     pub fn columns(&self) -> u32 {
-        self.valid_layout().columns
+        let layout = self.valid_layout();
+        if layout.has_cells {
+            layout.columns
+        } else {
+            layout.len() as u32
+        }
     }
 
-    /// Number of particles in a column.
+    /// Number of particles in a column: 1, unless they are those of a whole grid.
     pub fn rows(&self) -> u32 {
-        self.valid_layout().rows
+        let layout = self.valid_layout();
+        if layout.has_cells { layout.rows } else { 1 }
     }
 
     /// The index of a particle, if it exists.

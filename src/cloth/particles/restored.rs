@@ -9,14 +9,10 @@ use crate::cloth::{
 impl ClothParticles {
     /// Whether the stored arrays fit the numbers of columns and rows.
     pub(crate) fn is_valid(&self) -> bool {
-        let Layout { columns, rows, .. } = self.layout;
-        let is_laid_out = columns
-            .checked_mul(rows)
-            .is_some_and(|count| count as usize <= MAX_PARTICLES)
-            && self.layout == Layout::new(columns, rows);
+        let is_laid_out = self.layout.is_valid() && self.layout.len() <= MAX_PARTICLES;
         let blocks = self.blocks.len();
         let is_past = self.past.blocks.is_empty() || self.past.blocks.len() == blocks;
-        let is_empty = columns == 0 && rows == 0;
+        let is_empty = self.layout.len() == 0;
         self.is_stepped()
             && is_past
             && (is_empty && blocks == 0 || is_laid_out && blocks == self.layout.blocks())
@@ -25,10 +21,7 @@ impl ClothParticles {
     /// The memory layout, or an empty one if a scene file or an inspector has written an invalid one. The particles are
     /// then rebuilt.
     pub(super) fn valid_layout(&self) -> Layout {
-        let Layout { columns, rows, .. } = self.layout;
-        let is_valid =
-            self.blocks.len() == self.layout.blocks() && self.layout == Layout::new(columns, rows);
-        if is_valid {
+        if self.layout.is_valid() && self.blocks.len() == self.layout.blocks() {
             self.layout
         } else {
             Layout::default()

@@ -229,8 +229,7 @@ impl ClothParticles {
             let mut clean = Block::EMPTY;
             let was = self.blocks[index];
             for lane in 0..LANES {
-                let block = index % self.layout.strip as usize;
-                if self.layout.column(block, lane).is_some() {
+                if self.layout.index_at(index, lane).is_some() {
                     clean.set_position(lane, was.position(lane));
                     clean.set_displacement(lane, was.displacement(lane));
                     clean.set_inverse_mass(lane, was.inverse_mass(lane));

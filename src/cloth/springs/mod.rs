@@ -54,6 +54,9 @@ pub(crate) struct SpringList {
     pub chains: Chains,
     /// How all of them stiffen.
     pub stiffening: Option<ClothStiffening>,
+    /// Springs between the first particles are along the rows, columns and diagonals of this grid, which is torn or mapped. Only
+    /// those of other particles are on `chains`.
+    pub grid: Option<ClothGrid>,
 }
 
 impl SpringList {
@@ -87,6 +90,37 @@ impl SpringList {
             self.colours.push(start..self.springs.len());
         }
         places
+    }
+
+    /// The springs of the particles from this one on, whose ends are numbers in the list of particles that is returned, too.
+    pub fn beyond(&self, first: u32) -> (Self, Vec<u32>) {
+        let is_beyond = |spring: &Spring| spring.ends.iter().any(|end| *end >= first);
+        let chosen = (0..self.springs.len()).filter(|at| is_beyond(&self.springs[*at]));
+        let chosen: Vec<usize> = chosen.collect();
+        let ends = chosen.iter().flat_map(|at| self.springs[*at].ends);
+        let mut particles: Vec<u32> = ends.collect();
+        particles.sort_unstable();
+        particles.dedup();
+        let number = |particle: u32| particles.partition_point(|other| *other < particle) as u32;
+        let springs: Vec<Spring> = chosen
+            .iter()
+            .map(|at| Spring {
+                ends: self.springs[*at].ends.map(number),
+                ..self.springs[*at]
+            })
+            .collect();
+        let mut list = Self {
+            stiffening: self.stiffening,
+            ..Self::default()
+        };
+        let places = list.add(&springs, particles.len());
+        list.chains = self
+            .chains
+            .renamed(|edge| places[chosen.partition_point(|other| *other < edge as usize)]);
+        for chain in list.chains.colours.iter_mut().flatten() {
+            chain.first = number(chain.first);
+        }
+        (list, particles)
     }
 }
 
@@ -212,6 +246,11 @@ impl Springs {
             stiffening: material.stiffening,
             ..SpringList::default()
         };
+        list.grid = match (surface.rest_grid(), material.stiffening) {
+            // The rows of a grid have no knee.
+            (Some(grid), None) if grid.columns() > 1 && grid.rows() > 1 => Some(*grid),
+            _ => None,
+        };
         // Springs along edges come last: the stiffest springs are solved last.
         let [_, places] = [false, true].map(|is_along| {
             let links = all_links.iter();
@@ -230,7 +269,11 @@ impl Springs {
         let is_edge = |link: &&Link| link.kind == SpringKind::Structural;
         // Without stretch springs there are no chains.
         if places.len() == all_links.iter().filter(is_edge).count() {
-            list.chains = surface.chains().renamed(|edge| places[edge as usize]);
+            let chains = match &list.grid {
+                Some(grid) => surface.chains_beyond(grid.len() as u32),
+                None => surface.chains().clone(),
+            };
+            list.chains = chains.renamed(|edge| places[edge as usize]);
         }
         Self {
             storage: SpringStorage::List(Arc::new(list)),

@@ -294,11 +294,17 @@ impl Surface {
             .get_or_init(|| Fans::new(self.faces(), self.layout()))
     }
 
-    /// Where its particles are in memory: rows of a grid, or one row.
+    /// Where its particles are in memory: rows of a grid, torn or not, or one row.
     pub(crate) fn layout(&self) -> Layout {
         match &self.grid {
             Some(grid) => Layout::new(grid.columns(), grid.rows()),
-            None => Layout::new(self.len() as u32, 1),
+            None => match self.rest_grid() {
+                // The rows of a rope have one particle each, and its lanes are empty.
+                Some(grid) if grid.columns() > 1 => {
+                    Layout::of_torn_grid(grid.columns(), self.len() as u32)
+                }
+                _ => Layout::new(self.len() as u32, 1),
+            },
         }
     }
 
@@ -316,14 +322,19 @@ impl Surface {
 
     /// The chains of a mesh along its structural links. Their indices count from the first structural link.
     pub(crate) fn chains(&self) -> &Chains {
-        self.derived.chains.get_or_init(|| {
-            let links = self.links.iter();
-            let links = links.filter(|link| link.kind == SpringKind::Structural);
-            let edges: Vec<[u32; 2]> = links.map(|link| link.ends).collect();
-            Chains::trace(&edges, &self.rest, |particle| {
-                self.normal_of(particle as usize)
-            })
-        })
+        self.derived.chains.get_or_init(|| self.chains_beyond(0))
+    }
+
+    /// The same along those links alone that have an end from this particle on.
+    pub(crate) fn chains_beyond(&self, first: u32) -> Chains {
+        let links = self.links.iter();
+        let structural = links.filter(|link| link.kind == SpringKind::Structural);
+        let is_beyond = |[a, b]: [u32; 2]| a.max(b) >= first;
+        let chosen = (0_u32..).zip(structural.map(|link| link.ends));
+        let (numbers, edges): (Vec<u32>, Vec<[u32; 2]>) =
+            chosen.filter(|(_, ends)| is_beyond(*ends)).unzip();
+        let normal = |particle| self.normal_of(particle as usize);
+        Chains::trace(&edges, &self.rest, normal).renamed(|edge| numbers[edge as usize])
     }
 
     /// Its plane, if it is flat and convex. The shortest path between two particles is then a straight line.

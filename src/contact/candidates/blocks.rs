@@ -153,7 +153,7 @@ impl Candidates {
             let contact = &mut self.blocks[index];
             contact.lanes |= 1 << lane;
             contact.area[lane] = surface.area_of(candidate.particle as usize);
-            if layout.rows > 1 && candidate.has_faces {
+            if layout.has_cells && candidate.has_faces {
                 let strip = layout.strip as usize;
                 let is_last = (block + 1).is_multiple_of(strip);
                 let beside = if is_last {

@@ -220,7 +220,7 @@ impl Detection {
         let is_sewn =
             |face: &[u32; 3]| is_sewn_on(face, collider, (passed, self.particle_radius), particles);
         // Cells are tested eight at a time, with pins or without.
-        let is_by_cells = layout.rows > 1 && matches!(collider.shape, ColliderShape::Ball { .. });
+        let is_by_cells = layout.has_cells && matches!(collider.shape, ColliderShape::Ball { .. });
         let may_be_sewn = !is_by_cells && particles.has_pinned();
         let is_left_out = |face: &[u32; 3]| may_be_sewn && is_sewn(face);
         let by_triangles = narrow_phase == NarrowPhase::Triangles;

@@ -13,7 +13,7 @@
 use bevy::math::{Vec3A, Vec4};
 
 use super::{bounds::Bounds, participant::Participant};
-use crate::cloth::{LANES, MapInline};
+use crate::cloth::MapInline;
 
 /// A patch at the beginning and at the end of a sub-step.
 #[derive(Debug, Default, Clone, Copy)]
@@ -166,16 +166,11 @@ impl Motion {
     pub fn read(&mut self, cloths: &[Participant]) {
         self.end.clear();
         for cloth in cloths {
-            let layout = cloth.particles.layout();
-            let strip = layout.strip as usize;
-            for row in cloth.particles.blocks().chunks_exact(strip) {
-                let mut left = layout.columns as usize;
-                for lane in 0..LANES {
-                    let blocks = &row[..left.min(strip)];
-                    let places = blocks.iter().map(|block| cloth.point(block.position(lane)));
-                    self.end.extend(places.map(Vec3A::from));
-                    left -= blocks.len();
-                }
+            let blocks = cloth.particles.blocks();
+            for run in cloth.particles.layout().runs() {
+                let blocks = blocks[run.block..][..run.count].iter();
+                let places = blocks.map(|block| cloth.point(block.position(run.lane)));
+                self.end.extend(places.map(Vec3A::from));
             }
         }
     }

@@ -18,16 +18,16 @@ impl Origin {
         self.cloths.resize_with(cloths.len(), Vec::new);
         for (places, cloth) in self.cloths.iter_mut().zip(cloths) {
             let layout = cloth.particles.layout();
-            let strip = layout.strip as usize;
             places.clear();
             places.extend(cloth.particles.blocks().iter().map(|block| {
                 let view = block.view();
                 [X, Y, Z].map_inline(|axis| std::array::from_fn(|l| view[axis + l]))
             }));
-            for (block, lane) in (0..strip).flat_map(|block| (0..LANES).map(move |l| (block, l))) {
-                if layout.column(block, lane).is_none() {
-                    let row = places.iter_mut().skip(block).step_by(strip);
-                    row.for_each(|place| place[0][lane] = f32::NAN);
+            for (block, place) in places.iter_mut().enumerate() {
+                for (lane, x) in place[0].iter_mut().enumerate() {
+                    if layout.index_at(block, lane).is_none() {
+                        *x = f32::NAN;
+                    }
                 }
             }
         }

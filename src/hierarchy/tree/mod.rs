@@ -17,7 +17,9 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::{ClothError, ClothGrid, ClothParticles, Graph, Spring, SpringKind, Surface};
+use crate::cloth::{
+    ClothError, ClothGrid, ClothParticles, Graph, Layout, Spring, SpringKind, Surface,
+};
 use network::NetworkTree;
 use shape::Tree;
 use stored::growth;
@@ -53,6 +55,7 @@ impl QuadTree {
             Some(grid) => Self::of_grid(grid, diagonals),
             None => Self(Arc::new(NetworkTree::new(
                 surface.rest_positions(),
+                surface.layout(),
                 surface.graph(),
             ))),
         }
@@ -99,7 +102,8 @@ impl QuadTree {
             rest.len(),
             paths.map(|spring| (spring.ends, spring.rest_length)),
         );
-        Ok(Self(Arc::new(NetworkTree::new(rest, &graph))))
+        let layout = Layout::new(rest.len() as u32, 1);
+        Ok(Self(Arc::new(NetworkTree::new(rest, layout, &graph))))
     }
 
     /// Number of nodes.

@@ -26,7 +26,7 @@ const FOLDED: f64 = 1.5;
 /// A tree over arbitrarily connected particles.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct NetworkTree {
-    /// Layout of the particles: one row.
+    /// Layout of the particles.
     layout: Layout,
     nodes: Vec<NetworkNode>,
     ranges: Vec<Range<u32>>,
@@ -44,9 +44,8 @@ struct NetworkNode {
 }
 
 impl NetworkTree {
-    /// Builds a tree over particles at `rest` (m), with paths along the edges of `graph`.
-    pub fn new(rest: &[Vec3], graph: &Graph) -> Self {
-        let layout = Layout::new(rest.len() as u32, 1);
+    /// Builds a tree over particles at `rest` (m), which lie as `layout` says, with paths along the edges of `graph`.
+    pub fn new(rest: &[Vec3], layout: Layout, graph: &Graph) -> Self {
         let mut tree = Self {
             layout,
             ..Self::default()

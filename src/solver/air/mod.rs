@@ -133,7 +133,12 @@ impl Airflow {
     pub fn new(surface: &Surface, air: Air) -> Self {
         let layout = surface.layout();
         let is_grid = surface.as_grid().is_some();
-        let strip = layout.strip as usize;
+        // A grid's are found row by row.
+        let at_once = if is_grid {
+            layout.strip as usize
+        } else {
+            layout.blocks()
+        };
         Self {
             air,
             layout,
@@ -142,8 +147,8 @@ impl Airflow {
             is_local: false,
             linearized: vec![LinearizedDrag::NONE; layout.blocks()],
             places: vec![[0.0; LANES]; layout.blocks()],
-            areas: vec![[[0.0; LANES]; 3]; strip],
-            winds: vec![[[0.0; LANES]; 3]; strip],
+            areas: vec![[[0.0; LANES]; 3]; at_once],
+            winds: vec![[[0.0; LANES]; 3]; at_once],
             stride: 1,
             wind_stride: 1,
             since: 0,
@@ -286,7 +291,7 @@ impl Airflow {
             winds.fill(wind.to_array().map_inline(|of| [of; LANES]));
         }
         if let Some(triangles) = triangles {
-            let enclosed = triangles.areas(blocks, areas);
+            let enclosed = triangles.areas(blocks, layout, areas);
             if let Some(ClothPressure::Gauge(pressure)) = pressure {
                 let outwards = enclosed.outwards * enclosed.volume.signum();
                 coefficients.pressure = pressure * outwards as f32;

@@ -90,7 +90,7 @@ fn a_particle_of_a_mesh_stands_for_a_third_of_its_triangles() {
     shake(&mut particles);
     let blocks = particles.blocks();
     let mut areas = vec![[[0.0; LANES]; 3]; blocks.len()];
-    let enclosed = Triangles::new(&surface).areas(blocks, &mut areas);
+    let enclosed = Triangles::new(&surface).areas(blocks, surface.layout(), &mut areas);
     let places: Vec<DVec3> = particles.positions().map(Vec3::as_dvec3).collect();
     let mut expected = vec![DVec3::ZERO; places.len()];
     let mut volume = 0.0;

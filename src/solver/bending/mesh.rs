@@ -130,11 +130,12 @@ impl MeshBending {
         largest
     }
 
-    /// Takes places and displacements. A mesh's particles lie in one row of the layout: lane after lane.
+    /// Takes places and displacements.
     fn load(&mut self, blocks: &[Block]) {
-        for (lane, places) in self.places.chunks_mut(blocks.len().max(1)).enumerate() {
-            for (place, block) in places.iter_mut().zip(blocks) {
-                let (position, moved) = (block.position(lane), block.displacement(lane));
+        for run in self.layout.runs() {
+            let places = &mut self.places[run.index..][..run.count];
+            for (place, block) in places.iter_mut().zip(&blocks[run.block..]) {
+                let (position, moved) = (block.position(run.lane), block.displacement(run.lane));
                 *place = [position.extend(0.0), moved.extend(0.0)];
             }
         }
@@ -143,11 +144,12 @@ impl MeshBending {
     /// Adds the displacements by the forces.
     fn push(&mut self, blocks: &mut [Block]) {
         self.set_forces();
-        for (lane, rows) in self.rows.chunks(blocks.len().max(1)).enumerate() {
-            for (row, block) in rows.iter().zip(&mut *blocks) {
-                let moved = block.displacement(lane);
-                let given = self.weight * block.inverse_mass(lane) * row.left;
-                block.set_displacement(lane, moved + given.truncate());
+        for run in self.layout.runs() {
+            let rows = &self.rows[run.index..][..run.count];
+            for (row, block) in rows.iter().zip(&mut blocks[run.block..]) {
+                let moved = block.displacement(run.lane);
+                let given = self.weight * block.inverse_mass(run.lane) * row.left;
+                block.set_displacement(run.lane, moved + given.truncate());
             }
         }
     }

@@ -1,11 +1,11 @@
 //! The springs of a grid, chain by chain, in one partition or several. A partition consists of blocks side by side for chains
 //! from row to row, and of rows for chains within rows.
 
-use std::ops::Range;
+use std::{cmp::Ordering, ops::Range};
 
 use super::second_pass::{GridSprings, SecondPass};
 use crate::{
-    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, W},
+    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, Spring, SpringList, W},
     solver::{
         kernels::{
             Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,
@@ -28,8 +28,8 @@ pub(crate) struct GridSolver {
     /// Within a row: one on a border, one that is not.
     across: [SpringBand; 2],
     down: SpringBand,
-    /// If there are any.
-    diagonal: Option<SpringBand>,
+    /// To the right and to the left, if there are any.
+    diagonals: Option<[SpringBand; 2]>,
     scratch: Scratch,
     /// One for each partition.
     rows: Vec<RowScratch>,
@@ -52,10 +52,59 @@ struct PartitionResult {
 impl GridSolver {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
-        let strip = layout.strip as usize;
         let springs = |step, row| SpringBand::new(grid, layout, compliances, step, row);
         let across = [springs((0, 1), 0), springs((0, 1), 1)];
-        let down = springs((1, 0), 0);
+        let diagonal = || springs((1, 1), 0);
+        let diagonals = compliances
+            .shear
+            .is_finite()
+            .then(|| [(); 2].map(|()| diagonal()));
+        Self::of_bands(layout, across, springs((1, 0), 0), diagonals)
+    }
+
+    /// Of those of the springs in a list that join neighbours of the grid: of a torn or mapped one.
+    pub fn of_list(grid: &ClothGrid, list: &SpringList) -> Self {
+        let (columns, rows) = (grid.columns(), grid.rows() as usize);
+        let layout = Layout::new(columns, grid.rows());
+        let first = |end: u32| [(end / columns) as usize, (end % columns) as usize];
+        let none = || vec![f32::NAN; grid.len()];
+        let [mut across, mut down, mut right, mut left] = [(); 4].map(|()| none());
+        let is_on_grid = |spring: &&Spring| spring.ends.iter().all(|end| *end < grid.len() as u32);
+        for spring in list.springs.iter().filter(is_on_grid) {
+            let [a, b] = spring.ends;
+            let [[row, column], [end_row, end_column]] = [a.min(b), a.max(b)].map(first);
+            let (band, begin) = match (end_row > row, end_column.cmp(&column)) {
+                (false, _) => (&mut across, a.min(b)),
+                (true, Ordering::Equal) => (&mut down, a.min(b)),
+                (true, Ordering::Greater) => (&mut right, a.min(b)),
+                (true, Ordering::Less) => (&mut left, a.max(b)),
+            };
+            band[begin as usize] = spring.compliance;
+        }
+        let band = |step, of: &[f32], direction: Direction| {
+            SpringBand::of_rows(grid.step_length(step), layout, rows, |number, column| {
+                let row = direction.row(number, rows);
+                let compliance = of[row * columns as usize + column as usize];
+                (!compliance.is_nan()).then_some(compliance)
+            })
+        };
+        let across = [(); 2].map(|()| band((0, 1), &across, Direction::Down));
+        let down = band((1, 0), &down, Direction::Down);
+        let has_diagonals = right.iter().chain(&left).any(|of| !of.is_nan());
+        let diagonals = has_diagonals.then(|| {
+            [(&right, Direction::Right), (&left, Direction::Left)]
+                .map(|(of, direction)| band((1, 1), of, direction))
+        });
+        Self::of_bands(layout, across, down, diagonals)
+    }
+
+    fn of_bands(
+        layout: Layout,
+        across: [SpringBand; 2],
+        down: SpringBand,
+        diagonals: Option<[SpringBand; 2]>,
+    ) -> Self {
+        let strip = layout.strip as usize;
         let ripple_stiffness =
             [&across[1], &down].map(|springs| springs.stiffness() * springs.inverse_rest);
         let is_elastic = across.iter().chain([&down]).any(SpringBand::is_elastic);
@@ -66,11 +115,16 @@ impl GridSolver {
             across,
             down,
             ripple_stiffness,
-            diagonal: compliances.shear.is_finite().then(|| springs((1, 1), 0)),
+            diagonals,
             scratch: Scratch::new(layout),
             rows: vec![RowScratch::new(strip)],
             step_scale: StepScale::default(),
         }
+    }
+
+    /// Blocks of the grid's particles: the first.
+    pub(crate) fn blocks(&self) -> usize {
+        self.layout.blocks()
     }
 
     /// Solves all chains that lead from row to row in one direction.
@@ -80,9 +134,14 @@ impl GridSolver {
         direction: Direction,
         kernels: &Kernels,
     ) {
+        let [right, left] = match &self.diagonals {
+            Some([right, left]) => [Some(right), Some(left)],
+            None => [None; 2],
+        };
         let Some(springs) = (match direction {
             Direction::Down => Some(&self.down),
-            Direction::Right | Direction::Left => self.diagonal.as_ref(),
+            Direction::Right => right,
+            Direction::Left => left,
         }) else {
             return;
         };
@@ -119,7 +178,8 @@ impl GridSolver {
         (&mut self.second_pass, grid)
     }
 
-    fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, partitions: usize) {
+    /// The second pass, after all chains were solved in this many partitions.
+    pub(crate) fn solve_again(&mut self, blocks: &mut [Block], motion: &Motion, partitions: usize) {
         let (second_pass, mut grid) = self.second_pass(partitions);
         second_pass.solve(blocks, &mut grid, motion, partitions);
     }
@@ -129,14 +189,22 @@ impl GridSolver {
         let mut longest = Longest::default();
         let strip = self.layout.strip as usize;
         let [across, _] = &self.across;
+        let last = self.layout.rows as usize - 1;
         for row in rows {
             let (upper, lower) = blocks[row * strip..].split_at(strip);
-            (kernels.measure_within)(upper, across, &mut longest);
-            if let Some(lower) = lower.get(..strip) {
-                (kernels.measure_down)(upper, lower, &self.down, &mut longest);
-                if let Some(diagonal) = &self.diagonal {
-                    (kernels.measure_diagonal)(upper, lower, diagonal, &mut longest);
-                    (kernels.measure_diagonal)(lower, upper, diagonal, &mut longest);
+            (kernels.measure_within)(upper, across.holds_of(row, strip), &mut longest);
+            if row < last {
+                let lower = &lower[..strip];
+                (kernels.measure_down)(upper, lower, self.down.holds_of(row, strip), &mut longest);
+                if let Some([right, left]) = &self.diagonals {
+                    let left = left.holds_of(Direction::Left.row(row + 1, last + 1), strip);
+                    (kernels.measure_diagonal)(
+                        upper,
+                        lower,
+                        right.holds_of(row, strip),
+                        &mut longest,
+                    );
+                    (kernels.measure_diagonal)(lower, upper, left, &mut longest);
                 }
             }
         }
@@ -149,8 +217,8 @@ impl GridSolver {
         };
         let structural =
             ratio(&longest.across, &self.across[0]).max(ratio(&longest.down, &self.down));
-        let diagonal = self.diagonal.iter();
-        let diagonal = diagonal.map(|springs| ratio(&longest.diagonal, springs));
+        let diagonal = self.diagonals.iter();
+        let diagonal = diagonal.map(|[springs, _]| ratio(&longest.diagonal, springs));
         let bound = diagonal.fold(structural, f32::max);
         Stretch::of_ratios(structural, bound)
     }
@@ -186,8 +254,8 @@ impl GridSolver {
     /// Solves all chains in this many partitions, more than one.
     fn solve_in_partitions(&mut self, blocks: &mut [Block], kernels: &Kernels, partitions: usize) {
         let strip = self.layout.strip as usize;
-        if let Some(springs) = &self.diagonal {
-            for direction in [Direction::Right, Direction::Left] {
+        if let Some([right, left]) = &self.diagonals {
+            for (direction, springs) in [(Direction::Right, right), (Direction::Left, left)] {
                 let all = self.scratch.split(direction, (strip, partitions), blocks);
                 in_partitions(all, |mut partition| solve(&mut partition, springs, kernels));
             }
@@ -198,6 +266,24 @@ impl GridSolver {
             .scratch
             .split(Direction::Down, (strip, partitions), blocks);
         in_partitions(all, |mut partition| solve(&mut partition, down, kernels));
+    }
+
+    /// Ends a sub-step. Behind the grid's blocks there may be others.
+    pub(crate) fn end(&self, blocks: &mut [Block], motion: &Motion) -> SolvedSubstep {
+        let kernels = motion.kernels;
+        motion.tethers.pull(motion.anchors, blocks, 0, kernels);
+        let mut moved = [0.0; LANES];
+        (kernels.commit)(blocks, &mut moved);
+        let given = self.given_if(motion.measures, kernels);
+        let stretch = motion.measures.then(|| Stretch {
+            material: self.material(&given),
+            ..self.measure(blocks, kernels)
+        });
+        SolvedSubstep {
+            moved,
+            stretch,
+            ripple: self.ripple(blocks, &given),
+        }
     }
 
     /// Ends a sub-step in this many partitions.
@@ -293,7 +379,7 @@ impl SpringSolver for GridSolver {
                 .across
                 .iter_mut()
                 .chain([&mut self.down])
-                .chain(&mut self.diagonal)
+                .chain(self.diagonals.iter_mut().flatten())
             {
                 springs.soften(step_scale);
             }
@@ -328,19 +414,7 @@ impl SpringSolver for GridSolver {
         self.solve_across(blocks, kernels);
         self.solve_down(blocks, Direction::Down, kernels);
         self.solve_again(blocks, motion, 1);
-        motion.tethers.pull(motion.anchors, blocks, 0, kernels);
-        let mut moved = [0.0; LANES];
-        (kernels.commit)(blocks, &mut moved);
-        let given = self.given_if(motion.measures, kernels);
-        let stretch = motion.measures.then(|| Stretch {
-            material: self.material(&given),
-            ..self.measure(blocks, kernels)
-        });
-        SolvedSubstep {
-            moved,
-            stretch,
-            ripple: self.ripple(blocks, &given),
-        }
+        self.end(blocks, motion)
     }
 
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {

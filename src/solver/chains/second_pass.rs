@@ -160,9 +160,13 @@ impl SecondPass {
         for (row, pulled) in in_rows.chunks_exact(self.strip).enumerate() {
             let is_border = row == 0 || row == last;
             let springs = if is_border { border } else { inner };
-            (kernels.measure_given)(pulled, &springs.softness, &mut given[0]);
+            let softness = &springs.softness[springs.first_of(row)..];
+            (kernels.measure_given)(pulled, softness, &mut given[0]);
         }
-        (kernels.measure_given)(from_above, &down.softness, &mut given[1]);
+        for (row, pulled) in from_above.chunks_exact(self.strip).skip(1).enumerate() {
+            let softness = &down.softness[down.first_of(row)..];
+            (kernels.measure_given)(pulled, softness, &mut given[1]);
+        }
         let bands = [inner, down];
         for (given, springs) in given.iter_mut().zip(bands) {
             // At a length l of which the part g/r is given, the pull has given g l/r.
@@ -327,6 +331,10 @@ fn measure_row(
     };
     let springs = RowSprings {
         kinds: [across, grid.down],
+        first: [
+            across.first_of(row),
+            grid.down.first_of(row.saturating_sub(1)),
+        ],
         pulled: [
             &pulled[0][of_row(&pulled[0])],
             &pulled[1][of_row(&pulled[1])],

@@ -1,10 +1,15 @@
 //! Chains solved side by side against one after the other in f64.
 
+use std::collections::HashMap;
+
 use bevy::math::{DVec3, Vec3};
 
 use super::grid::GridSolver;
 use crate::{
-    cloth::{Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Surface},
+    cloth::{
+        Cloth, ClothGrid, ClothMaterial, ClothParticles, Compliances, Spring, SpringKind,
+        SpringList, Surface,
+    },
     solver::{
         kernels::{Direction, SimdLevel, StepScale},
         spring_solver::{Motion, SpringSolver},
@@ -189,6 +194,142 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
     }
 }
 
+/// The springs of a grid in a list, each with as many times the compliance as `factor` says; `None` for those that are torn.
+fn listed(
+    grid: &ClothGrid,
+    compliances: &Compliances,
+    mut factor: impl FnMut() -> Option<f32>,
+) -> SpringList {
+    let mut list = SpringList::default();
+    for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
+        for (a, b) in chains(grid, step)
+            .iter()
+            .flat_map(|chain| chain.windows(2))
+            .map(|of| (of[0], of[1]))
+        {
+            // Both diagonals are as wide.
+            let (kind, at) = if step == (1, -1) {
+                ((1, 1), (0, 0))
+            } else {
+                (step, a)
+            };
+            let compliance = compliances.of_strip(grid, kind, at);
+            if let (Some(compliance), Some(factor)) = (compliance, factor()) {
+                list.springs.push(Spring {
+                    kind: SpringKind::Structural,
+                    ends: [a, b].map(|(row, column)| grid.index(row, column)),
+                    rest_length: grid.step_length(kind),
+                    compliance: factor * compliance,
+                });
+            }
+        }
+    }
+    list
+}
+
+/// The same of grids that are torn and mapped at random: a chain that is cut is two, and each spring has a stiffness of its own.
+#[test]
+fn torn_and_mapped_families_are_solved_as_by_elimination_in_f64() {
+    for (columns, rows) in [
+        (2, 2),
+        (2, 5),
+        (3, 5),
+        (9, 17),
+        (16, 16),
+        (33, 20),
+        (70, 11),
+    ] {
+        for (noise, compliance) in [(0.01, 0.0), (0.01, 1.0e-3), (0.05, 1.0e-4)] {
+            let (grid, start) = crumpled(columns, rows, noise);
+            let compliances = Compliances {
+                structural: [5.0 * compliance, compliance],
+                shear: 2.0 * compliance,
+            };
+            let mut seed = u64::from(columns);
+            let list = listed(&grid, &compliances, || {
+                let torn = random(&mut seed) > 0.7;
+                (!torn).then_some(3.0_f32.powf(random(&mut seed)))
+            });
+            let springs: HashMap<[u32; 2], Spring> = list
+                .springs
+                .iter()
+                .map(|spring| (spring.ends, *spring))
+                .collect();
+            let between = |a: (u32, u32), b: (u32, u32)| {
+                springs.get(&[a, b].map(|(row, column)| grid.index(row, column)))
+            };
+            for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
+                let mut spring_solver = GridSolver::of_list(&grid, &list);
+                spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
+                let mut particles = start.clone();
+                let kernels = SimdLevel::Auto.kernels();
+                let blocks = particles.blocks_mut();
+                match step {
+                    (0, 1) => spring_solver.solve_across(blocks, &kernels),
+                    (1, 0) => spring_solver.solve_down(blocks, Direction::Down, &kernels),
+                    (1, 1) => spring_solver.solve_down(blocks, Direction::Right, &kernels),
+                    _ => spring_solver.solve_down(blocks, Direction::Left, &kernels),
+                }
+                let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
+                let rest = f64::from(grid.step_length(step));
+                for chain in chains(&grid, step) {
+                    for piece in chain.chunk_by(|a, b| between(*a, *b).is_some()) {
+                        let next =
+                            |cell| piece[1 + piece.iter().position(|at| *at == cell).unwrap_or(0)];
+                        let soft =
+                            |cell| between(cell, next(cell)).map_or(0.0, |of| of.compliance.into());
+                        solve_chain(piece, &start, rest, soft, &mut moved);
+                    }
+                }
+                for (index, (found, expected)) in particles.displacements().zip(&moved).enumerate()
+                {
+                    let off = found.as_dvec3().distance(*expected);
+                    // As above.
+                    assert!(
+                        off < 1.0e-4,
+                        "{columns} × {rows}, {step:?}, {noise} {compliance}, {index}: {off:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// All springs of a grid in a list are solved to the same bits as the grid's, in the second pass too, and measured alike.
+#[test]
+fn a_grid_in_a_list_has_the_same_bits() {
+    for (columns, rows) in [(9, 17), (16, 16), (33, 20), (70, 11)] {
+        for compliance in [0.0, 1.0e-4] {
+            let compliances = Compliances {
+                structural: [compliance, 3.0 * compliance],
+                shear: 2.0 * compliance,
+            };
+            let (grid, start) = crumpled(columns, rows, 0.02);
+            let listed = listed(&grid, &compliances, || Some(1.0));
+            let solvers = [
+                GridSolver::new(&grid, &compliances),
+                GridSolver::of_list(&grid, &listed),
+            ];
+            let [whole, listed] = solvers.map(|mut solver| {
+                solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
+                let kernels = SimdLevel::Auto.kernels();
+                let motion = Motion {
+                    kernels: &kernels,
+                    tethers: &Tethers::default(),
+                    anchors: &Anchors::default(),
+                    begins: true,
+                    measures: true,
+                };
+                let mut particles = start.clone();
+                let solved = solver.substep(particles.blocks_mut(), &motion, 1);
+                let places: Vec<Vec3> = particles.positions().collect();
+                (places, solved.stretch, solved.ripple, solved.moved)
+            });
+            assert!(whole == listed, "{columns} × {rows}, {compliance}");
+        }
+    }
+}
+
 /// Solved again at once, elastic chains have nothing left but the curvature of their equations: a relative error of the
 /// order of the noise in lengths, 1 %, which each solve leaves of what it finds. A spring whose first pull was forgotten
 /// would pull as far once more. (Rigid chains have no such pull, and between two pins they have no solution.)
@@ -196,13 +337,20 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
 fn what_is_solved_again_goes_on_from_its_pull() {
     for (columns, rows) in [(9, 17), (33, 20), (70, 11)] {
         for compliance in [1.0e-4, 1.0e-2] {
-            for down in [false, true] {
+            for (down, is_torn) in [(false, false), (true, false), (false, true), (true, true)] {
                 let (grid, mut particles) = crumpled(columns, rows, 0.001);
                 let compliances = Compliances {
                     structural: [compliance; 2],
                     shear: compliance,
                 };
-                let mut spring_solver = GridSolver::new(&grid, &compliances);
+                let mut seed = u64::from(rows);
+                let torn = listed(&grid, &compliances, || {
+                    (random(&mut seed) < 0.7).then_some(3.0_f32.powf(random(&mut seed)))
+                });
+                let mut spring_solver = match is_torn {
+                    true => GridSolver::of_list(&grid, &torn),
+                    false => GridSolver::new(&grid, &compliances),
+                };
                 spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
                 let kernels = SimdLevel::Auto.kernels();
                 let displaced = |particles: &ClothParticles| -> Vec<Vec3> {

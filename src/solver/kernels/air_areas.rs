@@ -3,7 +3,7 @@
 use bevy::math::Vec3A;
 
 use super::{barrier::one_block_at_a_time, each::three, pentadiagonal::Vec3Lanes};
-use crate::cloth::{Block, LANES, Lanes, Slot, Surface, View, X};
+use crate::cloth::{Block, LANES, Lanes, Layout, Run, Slot, Surface, View, X};
 
 /// A row of a grid, and the rows above and below it, itself where there is none.
 pub(crate) struct Rows<'a> {
@@ -116,22 +116,28 @@ impl Triangles {
     }
 
     /// The areas of all particles: a third of each of their triangles (m²). Returns what these enclose, if they enclose anything.
-    ///
-    /// A mesh's particles lie in one row of the layout: lane after lane.
-    pub fn areas(&mut self, blocks: &[Block], areas: &mut [Vec3Lanes]) -> Enclosed {
+    pub fn areas(&mut self, blocks: &[Block], layout: Layout, areas: &mut [Vec3Lanes]) -> Enclosed {
         let Some(first) = blocks.first() else {
             return Enclosed::default();
         };
         // Near the first of them, so that little is rounded away.
         let origin = first.position(0);
-        for (lane, places) in self.places.chunks_mut(blocks.len()).enumerate() {
-            for (place, block) in places.iter_mut().zip(blocks) {
-                *place = (block.position(lane) - origin).into();
+        for run in layout.runs() {
+            let places = &mut self.places[run.index..][..run.count];
+            for (place, block) in places.iter_mut().zip(&blocks[run.block..]) {
+                *place = (block.position(run.lane) - origin).into();
             }
         }
         self.add_up();
-        for (lane, sums) in self.areas.chunks(blocks.len()).enumerate() {
-            for (sum, area) in sums.iter().zip(&mut *areas) {
+        for Run {
+            lane,
+            index,
+            block,
+            count,
+        } in layout.runs()
+        {
+            let sums = &self.areas[index..][..count];
+            for (sum, area) in sums.iter().zip(&mut areas[block..]) {
                 let own = *sum / 6.0;
                 [area[0][lane], area[1][lane], area[2][lane]] = own.to_array();
             }

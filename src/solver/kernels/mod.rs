@@ -133,30 +133,30 @@ fn measure(a: &View, b: &View, hold: &Lanes, largest: &mut Lanes) {
 
 /// Measures a row's horizontal springs.
 #[inline(always)]
-fn measure_within(row: &[Block], springs: &SpringBand, longest: &mut Longest) {
-    for (pair, hold) in row.windows(2).zip(&springs.hold) {
+fn measure_within(row: &[Block], holds: &[Lanes], longest: &mut Longest) {
+    for (pair, hold) in row.windows(2).zip(holds) {
         measure(pair[0].view(), pair[1].view(), hold, &mut longest.across);
     }
-    if let (Some(first), Some(last), Some(hold)) = (row.first(), row.last(), springs.hold.last()) {
+    if let (Some(first), Some(last), Some(hold)) = (row.first(), row.last(), holds.last()) {
         measure(last.view(), first.shifted(), hold, &mut longest.across);
     }
 }
 
 /// Measures the vertical springs between two rows.
 #[inline(always)]
-fn measure_down(upper: &[Block], lower: &[Block], springs: &SpringBand, longest: &mut Longest) {
-    for ((a, b), hold) in upper.iter().zip(lower).zip(&springs.hold) {
+fn measure_down(upper: &[Block], lower: &[Block], holds: &[Lanes], longest: &mut Longest) {
+    for ((a, b), hold) in upper.iter().zip(lower).zip(holds) {
         measure(a.view(), b.view(), hold, &mut longest.down);
     }
 }
 
 /// Measures the springs from each column of one row to the next column of the other.
 #[inline(always)]
-fn measure_diagonal(left: &[Block], right: &[Block], springs: &SpringBand, longest: &mut Longest) {
-    for ((a, b), hold) in left.iter().zip(&right[1..]).zip(&springs.hold) {
+fn measure_diagonal(left: &[Block], right: &[Block], holds: &[Lanes], longest: &mut Longest) {
+    for ((a, b), hold) in left.iter().zip(&right[1..]).zip(holds) {
         measure(a.view(), b.view(), hold, &mut longest.diagonal);
     }
-    if let (Some(a), Some(b), Some(hold)) = (left.last(), right.first(), springs.hold.last()) {
+    if let (Some(a), Some(b), Some(hold)) = (left.last(), right.first(), holds.last()) {
         measure(a.view(), b.shifted(), hold, &mut longest.diagonal);
     }
 }
@@ -251,7 +251,7 @@ kernels! {
     twist_forward(links: [&[Vec3Lanes]; 2], stiffness: &[Lanes], moments: &mut [Vec3Lanes], before: &[Vec3Lanes], factors: &[Factor], out: &mut [Vec3Lanes]),
     twist_backward(row: &mut [Block], is_odd: bool, factors: [&[Factor]; 2], next: &[Vec3Lanes], out: &mut [Vec3Lanes]),
     tethers(row: &mut [Block], anchors: &[[Lanes; 3]], anchor_of: &[u32], length_square: &[Lanes]),
-    measure_within(row: &[Block], springs: &SpringBand, longest: &mut Longest),
-    measure_down(upper: &[Block], lower: &[Block], springs: &SpringBand, longest: &mut Longest),
-    measure_diagonal(left: &[Block], right: &[Block], springs: &SpringBand, longest: &mut Longest),
+    measure_within(row: &[Block], holds: &[Lanes], longest: &mut Longest),
+    measure_down(upper: &[Block], lower: &[Block], holds: &[Lanes], longest: &mut Longest),
+    measure_diagonal(left: &[Block], right: &[Block], holds: &[Lanes], longest: &mut Longest),
 }

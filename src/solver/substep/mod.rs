@@ -19,6 +19,7 @@ use super::{
     step::{PinMotion, SubStep, TickStep},
     stretch::Stretch,
     tether::{Anchors, Tethers},
+    torn_grid::TornGridSolver,
 };
 use crate::cloth::{ClothMaterial, ClothParticles, Layout, SpringStorage, Springs, Surface};
 
@@ -91,7 +92,10 @@ impl Solver {
                 let mut ends = list.springs.iter().flat_map(|spring| spring.ends);
                 let exists = |end: u32| (end as usize) < layout.len();
                 assert!(ends.all(exists), "springs between particles that exist");
-                Box::new(ListSolver::new(list, layout))
+                match &list.grid {
+                    Some(grid) => Box::new(TornGridSolver::new(grid, list)),
+                    None => Box::new(ListSolver::new(list, layout)),
+                }
             }
         };
         let forces = match springs.storage() {

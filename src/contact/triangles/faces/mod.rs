@@ -95,7 +95,7 @@ impl<'a> TrianglePush<'a> {
     ) -> Option<ResumePoint> {
         let mut resume = from;
         let ball = match motion.of.collider.shape {
-            ColliderShape::Ball { .. } if particles.layout().rows > 1 => Some(motion.at_end[0]),
+            ColliderShape::Ball { .. } if particles.layout().has_cells => Some(motion.at_end[0]),
             _ => None,
         };
         while resume.pass < MAX_PASSES {

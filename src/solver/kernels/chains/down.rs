@@ -27,13 +27,12 @@ const NONE: Lanes = [0.0; LANES];
 #[inline(always)]
 fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
-    springs: &SpringBand,
-    block: usize,
+    (springs, at): (&SpringBand, usize),
     pulled: &Lanes,
     before: &mut Before,
     link: &mut Link,
 ) {
-    let (softness, hold) = (&springs.softness[block], &springs.hold[block]);
+    let (softness, hold) = (&springs.softness[at], &springs.hold[at]);
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
         let [x, y, z] = span(a, b, springs.inverse_rest, l);
@@ -131,15 +130,17 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(chains: &mut Chains, springs: 
     let mut upper = rows.at(0);
     for (number, links) in links.chunks_exact_mut(*width).enumerate() {
         let lower = rows.at(number + 1);
+        let first = springs.first_of(number);
         let mut block = upper.first;
         for (chain, (link, before)) in links.iter_mut().zip(&mut **before).enumerate() {
             let (a, b) = (upper.block(chain).view(), lower.block(chain));
+            let own = (springs, first + block);
             if OBLIQUE && block == last {
                 let b = b.shifted();
-                eliminate::<true, DAMPED, false>([a, b], springs, block, &NONE, before, link);
+                eliminate::<true, DAMPED, false>([a, b], own, &NONE, before, link);
             } else {
                 let b = b.view();
-                eliminate::<false, DAMPED, false>([a, b], springs, block, &NONE, before, link);
+                eliminate::<false, DAMPED, false>([a, b], own, &NONE, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }
@@ -217,7 +218,8 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, springs: &SpringBand) 
             } else {
                 &NONE
             };
-            eliminate::<false, false, AGAIN>(ends, springs, block, pulled, before, link);
+            let own = (springs, springs.first_of(row) + block);
+            eliminate::<false, false, AGAIN>(ends, own, pulled, before, link);
         }
     }
     behind.fill(Behind::NONE);

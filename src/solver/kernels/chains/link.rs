@@ -75,7 +75,7 @@ impl Behind {
     };
 }
 
-/// Springs that lie alike: those that begin in the blocks of a row.
+/// Springs that lie alike: those that begin in the blocks of a row, or of each row.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SpringBand {
     /// Length at rest (m).
@@ -90,6 +90,8 @@ pub(crate) struct SpringBand {
     pub softness: Vec<Lanes>,
     /// 0, or infinity where there is no spring (1/kg).
     pub hold: Vec<Lanes>,
+    /// From the springs of a row to those of the next; 0 where one row stands for all.
+    stride: usize,
     /// The part of a spring's stretch that a sub-step answers; the rest is damping's, for what changes in it. 1 without.
     pub kept: f32,
 }
@@ -103,19 +105,33 @@ impl SpringBand {
         step: (u32, i32),
         row: u32,
     ) -> Self {
-        let compliance = |block: usize, lane: usize| {
-            let column = layout.column(block, lane)?;
+        Self::of_rows(grid.step_length(step), layout, 1, |_, column| {
             let end = column.checked_add_signed(step.1)?;
             let row = row.min(grid.rows().saturating_sub(1));
             (end < grid.columns()).then_some(())?;
             of.of_strip(grid, step, (row, column))
+        })
+    }
+
+    /// Springs of this length at rest (m), with a compliance (m/N) by the row and column that each begins in; `None` where there is
+    /// none. One row stands for all, or there are `rows`.
+    pub fn of_rows(
+        rest: f32,
+        layout: Layout,
+        rows: usize,
+        compliance: impl Fn(usize, u32) -> Option<f32>,
+    ) -> Self {
+        let strip = layout.strip as usize;
+        let at = |block: usize, lane: usize| {
+            let column = layout.column(block % strip, lane)?;
+            compliance(block / strip, column)
         };
         let all = |number: &dyn Fn(Option<f32>) -> f32| -> Vec<Lanes> {
-            let lanes = |block| std::array::from_fn(|lane| number(compliance(block, lane)));
-            (0..layout.strip as usize).map(lanes).collect()
+            let lanes = |block| std::array::from_fn(|lane| number(at(block, lane)));
+            (0..rows * strip).map(lanes).collect()
         };
-        let rest = grid.step_length(step);
         Self {
+            stride: if rows > 1 { strip } else { 0 },
             rest,
             inverse_rest: 1.0 / rest,
             inverse_square: all(&|compliance| compliance.map_or(0.0, |_| 1.0 / (rest * rest))),
@@ -124,6 +140,18 @@ impl SpringBand {
             hold: all(&|compliance| compliance.map_or(f32::INFINITY, |_| HOLD)),
             kept: 1.0,
         }
+    }
+
+    /// Where the springs that begin in a row are.
+    #[inline(always)]
+    pub fn first_of(&self, row: usize) -> usize {
+        row * self.stride
+    }
+
+    /// What holds the springs that begin in a row of so many blocks (1/kg).
+    #[inline(always)]
+    pub fn holds_of(&self, row: usize, strip: usize) -> &[Lanes] {
+        &self.hold[self.first_of(row)..][..strip]
     }
 
     /// The largest of its springs (N/m), where they give; else 0.
@@ -242,20 +270,18 @@ pub(crate) fn span(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] 
     })
 }
 
-/// Raises `largest` to the springs' elongations at their pull (m), from their multipliers, for rows of them as long as
-/// `softness`. They are as parts of lengths without elongation.
+/// Raises `largest` to the springs' elongations at their pull (m), from their multipliers. They are as parts of lengths without
+/// elongation.
 #[inline(always)]
 pub(crate) fn measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut Lanes) {
-    for row in pulled.chunks_exact(softness.len()) {
-        for (pulled, softness) in row.iter().zip(softness) {
-            for l in 0..LANES {
-                let given = (pulled[l] * softness[l]).abs();
-                largest[l] = if given > largest[l] {
-                    given
-                } else {
-                    largest[l]
-                };
-            }
+    for (pulled, softness) in pulled.iter().zip(softness) {
+        for l in 0..LANES {
+            let given = (pulled[l] * softness[l]).abs();
+            largest[l] = if given > largest[l] {
+                given
+            } else {
+                largest[l]
+            };
         }
     }
 }

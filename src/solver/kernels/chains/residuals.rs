@@ -34,6 +34,8 @@ impl Residuals {
 /// The springs within a row, and those that lead to it from the row above.
 pub(crate) struct RowSprings<'a> {
     pub kinds: [&'a SpringBand; 2],
+    /// Where theirs are in each.
+    pub first: [usize; 2],
     /// Their multipliers (m kg), if they are elastic.
     pub pulled: [&'a [Lanes]; 2],
 }
@@ -62,18 +64,19 @@ pub(crate) fn note_places(row: &[Block], left: &mut Residuals) {
 #[inline(always)]
 fn raise<const ELASTIC: bool>(
     [a, b]: [&Vec3Lanes; 2],
-    (springs, block): (&SpringBand, usize),
+    (springs, first, block): (&SpringBand, usize, usize),
     pulled: &[Lanes],
     left: &mut Lanes,
 ) {
-    let scale = &springs.inverse_square[block];
+    let at = first + block;
+    let scale = &springs.inverse_square[at];
     let mut most = *left;
     for l in 0..LANES {
         let (x, y, z) = (b[0][l] - a[0][l], b[1][l] - a[1][l], b[2][l] - a[2][l]);
         let p = (x * x + y * y + z * z) * scale[l];
         let found = if ELASTIC {
             // 1 and twice C + α̃ λ over the length, with Halley's step for C as in the equations.
-            let pull = springs.softness[block][l] * pulled[block][l] * springs.inverse_rest;
+            let pull = springs.softness[at][l] * pulled[block][l] * springs.inverse_rest;
             1.0 + 2.0 * ((p - 1.0) / (1.5 * p + 0.5) + pull)
         } else {
             p
@@ -101,20 +104,23 @@ fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut 
     let [in_row, from_above] = springs.pulled;
     let count = row.len();
     let (all_above, columns) = (&mut left.above[..count], &mut left.down[..count]);
+    let [first_across, first_down] = springs.first;
     let mut most = [0.0; LANES];
     let mut before = places(row[0].view());
-    let first = (down, 0);
+    let first = (down, first_down, 0);
     raise::<ELASTIC>([&all_above[0], &before], first, from_above, &mut columns[0]);
     all_above[0] = before;
     for j in 1..count {
         let own = places(row[j].view());
-        raise::<ELASTIC>([&before, &own], (across, j - 1), in_row, &mut most);
+        let across = (across, first_across, j - 1);
+        raise::<ELASTIC>([&before, &own], across, in_row, &mut most);
         let ends = [&all_above[j], &own];
-        raise::<ELASTIC>(ends, (down, j), from_above, &mut columns[j]);
+        raise::<ELASTIC>(ends, (down, first_down, j), from_above, &mut columns[j]);
         (all_above[j], before) = (own, own);
     }
     let after = places(row[0].shifted());
-    raise::<ELASTIC>([&before, &after], (across, count - 1), in_row, &mut most);
+    let across = (across, first_across, count - 1);
+    raise::<ELASTIC>([&before, &after], across, in_row, &mut most);
     left.across = largest(most);
 }
 
@@ -149,6 +155,7 @@ fn measure_at<const ELASTIC: bool>(
 ) {
     let [across, down] = springs.kinds;
     let [in_row, from_above] = springs.pulled;
+    let [first_across, first_down] = springs.first;
     let mut most = [0.0; LANES];
     let last = row.len() - 1;
     for &block in blocks {
@@ -160,14 +167,16 @@ fn measure_at<const ELASTIC: bool>(
             (block - 1, places(row[block - 1].view()), own)
         };
         let ends = [&first, &to_first];
-        raise::<ELASTIC>(ends, (across, before), in_row, &mut most);
+        let to_own = (across, first_across, before);
+        raise::<ELASTIC>(ends, to_own, in_row, &mut most);
         let after = match row.get(block + 1) {
             Some(after) => places(after.view()),
             None => places(row[0].shifted()),
         };
-        raise::<ELASTIC>([&own, &after], (across, block), in_row, &mut most);
+        let from_own = (across, first_across, block);
+        raise::<ELASTIC>([&own, &after], from_own, in_row, &mut most);
         let above = &mut left.above[block];
-        let down = (down, block);
+        let down = (down, first_down, block);
         raise::<ELASTIC>([above, &own], down, from_above, &mut left.down[block]);
         *above = own;
     }

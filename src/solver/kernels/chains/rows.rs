@@ -69,14 +69,15 @@ impl Strip {
 #[inline(always)]
 fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAIN: bool>(
     [a, b]: [&View; 2],
-    springs: &SpringBand,
+    (springs, first): (&SpringBand, usize),
     block: usize,
     pulled: &[Lanes],
     strip: &mut Strip,
     link: &mut Link,
     spike: &mut Lanes,
 ) {
-    let (softness, hold) = (&springs.softness[block], &springs.hold[block]);
+    let at = first + block;
+    let (softness, hold) = (&springs.softness[at], &springs.hold[at]);
     for l in 0..LANES {
         let [x, y, z] = span(a, b, springs.inverse_rest, l);
         let weight = a[W + l] + b[W + l];
@@ -128,7 +129,7 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAI
 #[inline(always)]
 fn reduce<const DAMPED: bool, const AGAIN: bool>(
     row: &[Block],
-    springs: &SpringBand,
+    springs: (&SpringBand, usize),
     pulled: &[Lanes],
     links: &mut [Link],
     spikes: &mut [Lanes],
@@ -270,7 +271,6 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
     rows: &mut RowChains,
     [border, inner]: &[SpringBand; 2],
 ) {
-    let strip = border.hold.len();
     let RowChains {
         blocks,
         first,
@@ -280,12 +280,11 @@ fn solve<const DAMPED: bool, const AGAIN: bool>(
         pulled,
     } = rows;
     let (first, last) = (*first, *of - 1);
+    let strip = scratch.links.len() / GROUP;
     let springs_of = |row: usize| {
-        if row == 0 || row == last {
-            border
-        } else {
-            inner
-        }
+        let is_border = row == 0 || row == last;
+        let springs = if is_border { border } else { inner };
+        (springs, springs.first_of(row))
     };
     let blocks_of = |row: usize| (row - first) * strip..(row - first + 1) * strip;
     let RowScratch {
