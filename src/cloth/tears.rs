@@ -16,8 +16,8 @@ use super::surface::Surface;
 /// alone opens nothing, unless an end of it is at a border.
 ///
 /// Torn cloth keeps its particles, with their places, velocities and total mass. New particles follow after them. A pinned or
-/// attached particle holds both sides of a tear through it. A torn grid goes on as a mesh. Its parts stay one cloth, which
-/// collides and sleeps as before. Scenes hold this component, and snapshots do, too.
+/// attached particle holds both sides of a tear through it. A torn grid is still solved as a grid, whose rows and columns
+/// are cut; its faces are those of a mesh. Its parts stay one cloth, which collides and sleeps as before. Scenes hold this component, and snapshots do, too.
 ///
 /// To mend a cloth, empty it: `*tears = ClothTears::default()`. Edges that the cloth does not have are a fault,
 /// [`NoSuchEdge`](crate::cloth::ClothError::NoSuchEdge). So empty it when you give the entity another `Cloth`.
@@ -65,10 +65,12 @@ impl ClothTears {
         self.0.len() - before
     }
 
-    /// Tears a face out, given by its particles: it comes off as a part of its own. Returns how many edges were whole.
+    /// Tears a face out, given by its particles: it comes off as a part of its own. Returns how many edges were whole:
+    /// 0 of particles that do not exist.
     pub fn tear_out(&mut self, surface: &Surface, [a, b, c]: [u32; 3]) -> usize {
+        let exist = [a, b, c].iter().all(|end| (*end as usize) < surface.len());
         // The segment of a rope is no face.
-        if b == c {
+        if b == c || !exist {
             return 0;
         }
         let edges = [[a, b], [b, c], [c, a]];
@@ -76,8 +78,11 @@ impl ClothTears {
     }
 
     /// Tears the cloth off a particle, such as a pinned one: it keeps the faces around it, and the rest comes off. Returns how
-    /// many edges were whole.
+    /// many edges were whole: 0 of a particle that does not exist.
     pub fn tear_off(&mut self, surface: &Surface, particle: u32) -> usize {
+        if particle as usize >= surface.len() {
+            return 0;
+        }
         let edges = surface
             .faces_around(particle)
             .map(|[a, b, c]| match particle {

@@ -69,6 +69,11 @@
 //!    displacement since the search is measured. If that exceeds the margin, too, the search is repeated before anything
 //!    else is done.
 //!
+//! A tear takes springs away, and so it breaks the second assumption for the tree of the whole cloth. Therefore a torn cloth has a
+//! tree of its own, over the springs that are left, before anything searches it. A particle that comes apart is two in that tree. Distances
+//! along the springs grow, and a patch whose parts hang together no more has an infinite radius. Such a patch is halved between its
+//! parts, as far as halves of equal size allow. The theorem holds for the torn cloth as for any network, with the stretch of the springs that are left.
+//!
 //! The proof does not assume that the cloth is flat, convex or smooth: it may be folded, crumpled, or intersect itself.
 //! A network's path may leave its patch, because *s* is that of the whole cloth.
 //!

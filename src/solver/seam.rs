@@ -141,8 +141,8 @@ impl Thread {
             _ => return,
         };
         let resistance = self.inverse_mass(states) + softness;
-        // Not of NaN.
-        if resistance > 0.0 {
+        // Not of NaN, and what gives without end does not pull.
+        if resistance > 0.0 && resistance < f32::INFINITY {
             let by = -(excess + softness * *pulled) / resistance;
             *pulled += by;
             self.push(by, states);

@@ -23,7 +23,7 @@ pub struct Stretch {
     /// membrane in a frame, at the tension in half of the cloth's width, or at the median particle of a mesh. 0 where no chain gives.
     pub ripple_substeps: f32,
     /// Number of sub-steps in a tick as long as the last that holds the bodies on the cloth, by their weight on the
-    /// chains that carry them. 0 if the cloth carries none.
+    /// chains that carry them. On a mesh they also hold the places that are denser than others. 0 if there is neither.
     pub load_substeps: f32,
     /// Number of sub-steps in a tick as long as the last that holds the chains together where something that moves forces
     /// them over a collider's edges. 0 if nothing does.

@@ -3,6 +3,7 @@
 mod async_build;
 mod attach;
 mod bake;
+mod blades;
 mod cape;
 mod characters;
 mod clones;

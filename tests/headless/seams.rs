@@ -167,39 +167,39 @@ fn a_sheet_hangs_from_a_sheet() {
     }
 }
 
-/// A cloth that wants more sub-steps than it would take alone has the tick done again, but never with fewer than the cloth beside it takes.
+/// A cloth with a tolerance has a tick done again only with more sub-steps than were taken. A rigid one never meets its tolerance, but may take
+/// no more than 150. Beside a cloth that takes 200, its tick is done once, with 200.
 #[test]
 fn a_repeated_tick_takes_no_fewer_substeps() {
-    for many in [10, 200] {
-        let mut app = app();
-        let strict = ClothSettings {
-            substepping: Substepping::Adaptive {
-                stretch: 1.0e-6,
-                max_substeps: 400,
-            },
-            ..default()
-        };
-        let first = Cloth::new(12, 12, 0.05);
-        let first = app.world_mut().spawn((first, strict)).id();
-        let below = Transform::from_xyz(0.0, -0.55, 0.0);
-        let second = (Cloth::new(12, 12, 0.05), Pins::none(), below);
-        let second = (app.world_mut()).spawn((second, ClothSettings::substeps(many)));
-        let second = second.id();
-        sew(
-            &mut app,
-            ClothSeam::new((first, Pin::Row(11)), (second, Pin::Row(0))),
-        );
-        let mut most = 0;
-        for _ in 0..32 {
-            tick(&mut app, 1);
-            // The sum of all runs: one of `many`, and any others of more.
-            let [substeps, of_second] = [first, second].map(|cloth| stats(&app, cloth).substeps);
-            assert_eq!(substeps, of_second);
-            let others = substeps - many;
-            assert!(substeps == many || others > many, "{substeps} of {many}");
-            most = most.max(substeps);
-        }
-        assert!(many > 10 || most > 20, "no tick was done again: {most}");
+    let many = 200;
+    let mut app = app();
+    let strict = ClothSettings {
+        substepping: Substepping::Adaptive {
+            stretch: 1.0e-8,
+            max_substeps: 150,
+        },
+        ..default()
+    };
+    let rigid = ClothMaterial {
+        stretch_compliance: 0.0,
+        shear_compliance: 0.0,
+        ..ClothMaterial::COTTON
+    };
+    let first = (Cloth::new(12, 12, 0.05), rigid, strict);
+    let first = app.world_mut().spawn(first).id();
+    let below = Transform::from_xyz(0.0, -0.55, 0.0);
+    let second = (Cloth::new(12, 12, 0.05), Pins::none(), below);
+    let second = (app.world_mut()).spawn((second, ClothSettings::substeps(many)));
+    let second = second.id();
+    sew(
+        &mut app,
+        ClothSeam::new((first, Pin::Row(11)), (second, Pin::Row(0))),
+    );
+    for _ in 0..32 {
+        tick(&mut app, 1);
+        // The sum of all runs.
+        let substeps = [first, second].map(|cloth| stats(&app, cloth).substeps);
+        assert_eq!(substeps, [many; 2]);
     }
 }
 

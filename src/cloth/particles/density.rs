@@ -11,6 +11,8 @@ pub(crate) struct DensityFactors {
     pub mean: f32,
     /// The smallest.
     pub least: f32,
+    /// The largest.
+    pub most: f32,
 }
 
 impl Default for DensityFactors {
@@ -20,6 +22,7 @@ impl Default for DensityFactors {
             of_particles: Vec::new(),
             mean: 1.0,
             least: 1.0,
+            most: 1.0,
         }
     }
 }
@@ -37,6 +40,7 @@ impl DensityFactors {
         Self {
             mean: (sum / f64::from(surface.area())) as f32,
             least: of_particles.iter().copied().fold(f32::INFINITY, f32::min),
+            most: of_particles.iter().copied().fold(0.0, f32::max),
             of_particles,
         }
     }

@@ -142,18 +142,26 @@ impl ClothParticles {
     }
 
     /// The particles of the surface with other tears: each one takes place, motion and mass of its parent, and of the mass
-    /// the share of its area.
-    pub(crate) fn torn(&self, from: &Surface, to: &Surface, parents: &[u32]) -> Self {
+    /// the share of its area. `is_parted` leaves a gap between those of one parent, for contact of cloth with cloth.
+    pub(crate) fn torn(
+        &self,
+        from: &Surface,
+        to: &Surface,
+        parents: &[u32],
+        is_parted: bool,
+    ) -> Self {
         let mut new = Self {
             substep: self.substep,
             past: self.past.of_parents(self.layout, to.layout(), parents),
             ..Self::of_layout(to.layout())
         };
-        let places: Vec<Vec3> = parents
+        let mut places: Vec<Vec3> = parents
             .iter()
             .map(|parent| self.position_at(*parent as usize))
             .collect();
-        let places = to.parted(&places, |particle| parents[particle as usize]);
+        if is_parted {
+            places = to.parted(&places, |particle| parents[particle as usize]);
+        }
         for ((index, parent), slot) in parents.iter().enumerate().zip(new.layout.slots()) {
             let (parent, old) = (*parent as usize, self.layout.slot_of(*parent as usize));
             let (was, block) = (&self.blocks[old.block], &mut new.blocks[slot.block]);

@@ -1,10 +1,11 @@
 //! The springs between the particles, sorted by colour.
 
+mod list;
 mod stiffness;
 #[cfg(test)]
 mod tests;
 
-use std::{ops::Range, sync::Arc};
+use std::sync::Arc;
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -12,10 +13,11 @@ use super::{
     error::ClothError,
     grid::ClothGrid,
     lanes::Layout,
-    material::{ClothMaterial, ClothStiffening},
+    material::ClothMaterial,
     spring::{Spring, SpringKind},
-    surface::{Chains, Link, Surface},
+    surface::{Link, Surface},
 };
+pub(crate) use list::SpringList;
 pub(crate) use stiffness::StiffnessFactors;
 
 /// A cloth's springs, sorted by colour. No two springs of one colour share a particle, so that they can be solved in
@@ -42,85 +44,6 @@ pub(crate) enum SpringStorage {
 impl Default for SpringStorage {
     fn default() -> Self {
         Self::List(Arc::default())
-    }
-}
-
-/// Springs between arbitrary particles, colour by colour.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub(crate) struct SpringList {
-    pub springs: Vec<Spring>,
-    pub colours: Vec<Range<usize>>,
-    /// Springs that are solved together, after the sweep over the others.
-    pub chains: Chains,
-    /// How all of them stiffen.
-    pub stiffening: Option<ClothStiffening>,
-    /// Springs between the first particles are along the rows, columns and diagonals of this grid, which is torn or mapped. Only
-    /// those of other particles are on `chains`.
-    pub grid: Option<ClothGrid>,
-}
-
-impl SpringList {
-    /// Adds springs between `particles` particles, in colours of their own. Each takes the first colour that is free at
-    /// both of its ends. Returns the index of each.
-    fn add(&mut self, springs: &[Spring], particles: usize) -> Vec<u32> {
-        let mut taken: Vec<u64> = vec![0; particles];
-        let mut colour_of = Vec::with_capacity(springs.len());
-        for (index, spring) in springs.iter().enumerate() {
-            let [a, b] = spring.ends.map(|end| end as usize);
-            // Beyond 63 springs at a particle, each further spring gets its own colour.
-            let free = (!(taken[a] | taken[b])).trailing_zeros().min(63);
-            let colour = if free < 63 {
-                taken[a] |= 1 << free;
-                taken[b] |= 1 << free;
-                free as usize
-            } else {
-                63 + index
-            };
-            colour_of.push(colour);
-        }
-        let mut order: Vec<usize> = (0..springs.len()).collect();
-        order.sort_by_key(|index| colour_of[*index]);
-        let mut places = vec![0; springs.len()];
-        for group in order.chunk_by(|a, b| colour_of[*a] == colour_of[*b]) {
-            let start = self.springs.len();
-            for &index in group {
-                places[index] = self.springs.len() as u32;
-                self.springs.push(springs[index]);
-            }
-            self.colours.push(start..self.springs.len());
-        }
-        places
-    }
-
-    /// The springs of the particles from this one on, whose ends are numbers in the list of particles that is returned, too.
-    pub fn beyond(&self, first: u32) -> (Self, Vec<u32>) {
-        let is_beyond = |spring: &Spring| spring.ends.iter().any(|end| *end >= first);
-        let chosen = (0..self.springs.len()).filter(|at| is_beyond(&self.springs[*at]));
-        let chosen: Vec<usize> = chosen.collect();
-        let ends = chosen.iter().flat_map(|at| self.springs[*at].ends);
-        let mut particles: Vec<u32> = ends.collect();
-        particles.sort_unstable();
-        particles.dedup();
-        let number = |particle: u32| particles.partition_point(|other| *other < particle) as u32;
-        let springs: Vec<Spring> = chosen
-            .iter()
-            .map(|at| Spring {
-                ends: self.springs[*at].ends.map(number),
-                ..self.springs[*at]
-            })
-            .collect();
-        let mut list = Self {
-            stiffening: self.stiffening,
-            ..Self::default()
-        };
-        let places = list.add(&springs, particles.len());
-        list.chains = self
-            .chains
-            .renamed(|edge| places[chosen.partition_point(|other| *other < edge as usize)]);
-        for chain in list.chains.colours.iter_mut().flatten() {
-            chain.first = number(chain.first);
-        }
-        (list, particles)
     }
 }
 

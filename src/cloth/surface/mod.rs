@@ -230,9 +230,9 @@ impl Surface {
         self.extent.particles_across
     }
 
-    /// Number of particles along its long side. For a mesh, that of a square with its diagonal.
+    /// Number of particles along its long side: of a grid, torn or not, and of a mesh as of a square with its diagonal.
     pub fn particles_along(&self) -> usize {
-        match &self.grid {
+        match self.rest_grid() {
             Some(grid) => grid.columns().max(grid.rows()) as usize,
             None => {
                 let side = self.diagonal() * std::f32::consts::FRAC_1_SQRT_2;

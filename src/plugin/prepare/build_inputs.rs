@@ -30,6 +30,8 @@ pub(crate) struct BuildInputs<'a> {
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
+    /// Whether it collides with itself.
+    pub has_layers: bool,
     /// Whether it is built in the background.
     pub is_async: bool,
 }

@@ -221,6 +221,7 @@ fn build_cloth(
             .attachments
             .map_or(&[][..], ClothAttachments::as_slice),
         scale,
+        has_layers: inputs.self_collision.is_some(),
         is_async: around.async_builds.contains(cloth.entity),
     };
     let is_new = built.from.is_some() || particles.is_empty();

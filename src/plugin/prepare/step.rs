@@ -85,6 +85,11 @@ pub(super) fn prepare_step(
         Some(_) => needed.max(state.layer_substeps),
         None => needed,
     };
+    let is_stress_asked = inputs.tearing.is_some() && surface.rest_grid().is_none();
+    let needed = match settings.substepping {
+        Substepping::Automatic if is_stress_asked => needed.max(Substepping::for_stress(one)),
+        _ => needed,
+    };
     if !state.rest.is_asleep() {
         // The tick says so again.
         state.layer_substeps = 0;

@@ -103,7 +103,7 @@ pub(super) fn follow_tears(
     let Some(parents) = surface.parents_in(&before) else {
         return Ok(Build::Kept);
     };
-    let torn = particles.torn(&before, surface, &parents);
+    let torn = particles.torn(&before, surface, &parents, wanted.has_layers);
     **particles = torn;
     let count = recipe
         .tears

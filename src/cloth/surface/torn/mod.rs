@@ -11,7 +11,8 @@
 //!   o───o───o          o───o───o
 //! ```
 //!
-//! They are moved apart by a fiftieth of the way to their faces' middles, so that layers know which side each is on.
+//! Where cloth meets cloth, they are moved apart by a fiftieth of the way to their faces' middles: so layers know which side each
+//! is on.
 //!
 //! Particles keep their indices, and new ones follow in the order in which edges were torn. So whoever knows a particle by
 //! its index knows it after the next tear, too. A particle's mass and area are shared out by its faces, and nothing is lost.

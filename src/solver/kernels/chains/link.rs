@@ -148,7 +148,7 @@ impl SpringBand {
         row * self.stride
     }
 
-    /// What holds the springs that begin in a row of so many blocks (1/kg).
+    /// `hold` of the springs that begin in a row of so many blocks.
     #[inline(always)]
     pub fn holds_of(&self, row: usize, strip: usize) -> &[Lanes] {
         &self.hold[self.first_of(row)..][..strip]
