@@ -1,5 +1,5 @@
 //! A cloth from a mesh beside the same cloth from a grid: a sub-step, a search, the building, and ticks of an app; and a
-//! fine mesh that is driven by a coarse cloth.
+//! fine mesh that is driven by a coarse cloth. Also ticks of a grid that may tear, is torn, or is mapped.
 //! `cargo bench --profile dev --bench mesh`; in `sub-steps` an element is a spring in a sub-step.
 
 #[path = "../tests/shared/meshes.rs"]
@@ -8,18 +8,19 @@ mod meshes;
 use std::time::{Duration, Instant};
 
 use bevy::{
-    MinimalPlugins, app::App, math::Vec3, time::TimeUpdateStrategy, transform::TransformPlugin,
+    MinimalPlugins, app::App, ecs::world::EntityWorldMut, math::Vec3, time::TimeUpdateStrategy,
+    transform::TransformPlugin,
 };
 /// What `meshes` calls the crate, whose own tests read it, too.
 use bevy_drape as library;
 use bevy_drape::{
     cloth::{
-        Cloth, ClothFactor, ClothMaterial, ClothMaterialMap, ClothParticles, Pin, Pins, Springs,
-        Surface, SurfaceBinding, TriangleMesh,
+        Cloth, ClothFactor, ClothMaterial, ClothMaterialMap, ClothPaint, ClothParticles,
+        ClothTearing, ClothTears, Pin, Pins, Springs, Surface, SurfaceBinding, TriangleMesh,
     },
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, Probe, QuadTree, TopDownQuery},
     prelude::{ClothAsyncBuild, ClothSettings, DrapePlugins},
-    solver::{Solver, TickStep},
+    solver::{ClothCreasing, Solver, TickStep},
 };
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
@@ -274,6 +275,60 @@ fn ticks(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// A grid that may change: what a tick of it costs without, with what is not used, and with what is.
+fn changes(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("tick of a 64² grid");
+    group
+        .sample_size(20)
+        .warm_up_time(Duration::from_secs(1))
+        .measurement_time(Duration::from_secs(2));
+    let awake = ClothSettings {
+        sleeps: false,
+        ..Default::default()
+    };
+    let [(_, grid, pins), ..] = hung();
+    // Half of a row in its middle.
+    let slit = (32 * 64 + 16..32 * 64 + 48).map(|at| [at, at + 1]);
+    let mut torn = ClothTears::default();
+    torn.tear_all(slit);
+    let softer = ClothPaint::at_rest(|place| if place.y < -1.0 { 0.5 } else { 1.0 });
+    let map = ClothMaterialMap {
+        stretch: ClothFactor::of(softer),
+        ..Default::default()
+    };
+    let never = ClothCreasing {
+        yield_curvature: 1.0e6,
+        hardening: 0.5,
+    };
+    let insert: [(&str, &dyn Fn(&mut EntityWorldMut)); 7] = [
+        ("as it is", &|_| {}),
+        ("may be cut", &|cloth| {
+            cloth.insert(ClothTears::default());
+        }),
+        ("may tear", &|cloth| {
+            cloth.insert(ClothTearing::new(1.0e6));
+        }),
+        ("torn", &|cloth| {
+            cloth.insert(torn.clone());
+        }),
+        ("mapped", &|cloth| {
+            cloth.insert(map.clone());
+        }),
+        ("may crease", &|cloth| {
+            cloth.insert(never);
+        }),
+        ("as it is, again", &|_| {}),
+    ];
+    for (name, insert) in insert {
+        let mut app = app();
+        let cloth = (grid.clone(), pins.clone(), awake);
+        insert(&mut app.world_mut().spawn(cloth));
+        (0..60).for_each(|_| app.update());
+        group.bench_function(name, |bencher| bencher.iter(|| app.update()));
+    }
+    group.finish();
+}
+
 /// The longest tick from where a mesh of 4,096 vertices is spawned to where it moves.
 fn first_ticks(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("longest of the first ticks of 4,096");
@@ -318,6 +373,7 @@ criterion_group!(
     building,
     render_meshes,
     ticks,
+    changes,
     first_ticks
 );
 criterion_main!(benches);

@@ -1,8 +1,19 @@
 //! Springs between arbitrary particles.
 
-use std::ops::Range;
+use std::{cmp::Ordering, ops::Range};
 
 use crate::cloth::{grid::ClothGrid, material::ClothStiffening, spring::Spring, surface::Chains};
+
+/// The compliances of springs along the rows, columns and diagonals of a grid (m/N), particle by particle.
+#[derive(Debug)]
+pub(crate) struct GridCompliances {
+    /// To the right, and down.
+    pub across: Vec<f32>,
+    pub down: Vec<f32>,
+    /// To the right in the row below, and in the row above.
+    pub falling: Vec<f32>,
+    pub rising: Vec<f32>,
+}
 
 /// Springs between arbitrary particles, colour by colour.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -49,6 +60,32 @@ impl SpringList {
             self.colours.push(start..self.springs.len());
         }
         places
+    }
+
+    /// The compliances of the springs along a grid (m/N), by the particle that each begins at; NaN where there is none.
+    pub fn on_grid(&self, grid: &ClothGrid) -> GridCompliances {
+        let columns = grid.columns();
+        let none = || vec![f32::NAN; grid.len()];
+        let mut of = GridCompliances {
+            across: none(),
+            down: none(),
+            falling: none(),
+            rising: none(),
+        };
+        let is_on_grid = |spring: &&Spring| spring.ends.iter().all(|end| *end < grid.len() as u32);
+        for spring in self.springs.iter().filter(is_on_grid) {
+            let [a, b] = spring.ends;
+            let [upper, lower] = [a.min(b), a.max(b)];
+            let is_across = upper / columns == lower / columns;
+            let (kind, begin) = match (upper % columns).cmp(&(lower % columns)) {
+                _ if is_across => (&mut of.across, upper),
+                Ordering::Equal => (&mut of.down, upper),
+                Ordering::Less => (&mut of.falling, upper),
+                Ordering::Greater => (&mut of.rising, lower),
+            };
+            kind[begin as usize] = spring.compliance;
+        }
+        of
     }
 
     /// The springs of the particles from this one on, whose ends are numbers in the list of particles that is returned, too.

@@ -141,14 +141,28 @@ impl MeshBending {
         }
     }
 
-    /// Adds the displacements by the forces.
-    fn push(&mut self, blocks: &mut [Block]) {
+    /// The longest sub-step in which it is soft enough to be pushed (s).
+    pub fn longest_push(&self, blocks: &[Block]) -> f32 {
+        (LIMIT / self.bound(blocks)).sqrt()
+    }
+
+    /// Adds what the forces at the positions make of displacements with this weight (s²).
+    pub fn push(&mut self, blocks: &mut [Block], weight: f32) {
+        self.load(blocks);
+        for [_, moved] in &mut self.places {
+            *moved = Vec4::ZERO;
+        }
+        self.add_forces(blocks, weight);
+    }
+
+    /// Adds what the forces make of displacements with this weight (s²).
+    fn add_forces(&mut self, blocks: &mut [Block], weight: f32) {
         self.set_forces();
         for run in self.layout.runs() {
             let rows = &self.rows[run.index..][..run.count];
             for (row, block) in rows.iter().zip(&mut blocks[run.block..]) {
                 let moved = block.displacement(run.lane);
-                let given = self.weight * block.inverse_mass(run.lane) * row.left;
+                let given = weight * block.inverse_mass(run.lane) * row.left;
                 block.set_displacement(run.lane, moved + given.truncate());
             }
         }
@@ -158,7 +172,7 @@ impl MeshBending {
     pub fn solve(&mut self, blocks: &mut [Block]) {
         self.load(blocks);
         if self.is_soft {
-            self.push(blocks);
+            self.add_forces(blocks, self.weight);
             return;
         }
         self.set_right_side();

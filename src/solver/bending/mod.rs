@@ -128,14 +128,15 @@ impl Bending {
     pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
         match &self.of {
             Kind::Grid(grid) => grid.longest_push(blocks),
-            Kind::Mesh(_) => 0.0,
+            Kind::Mesh(mesh) => mesh.longest_push(blocks),
         }
     }
 
     /// Adds the displacements by the forces at the current positions, with this weight (s²).
     pub(super) fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
-        if let Kind::Grid(grid) = &mut self.of {
-            grid.push(blocks, weight, kernels);
+        match &mut self.of {
+            Kind::Grid(grid) => grid.push(blocks, weight, kernels),
+            Kind::Mesh(mesh) => mesh.push(blocks, weight),
         }
     }
 

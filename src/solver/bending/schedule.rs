@@ -22,6 +22,16 @@ impl BendingSchedule {
         self.stride = 1;
     }
 
+    /// The same in a tick of forces, whose first and last kicks are halves: as many as the kick where it bends in each.
+    pub fn times(&mut self, index: u32, count: u32) -> f32 {
+        match index {
+            _ if self.stride == 1 && (index == 0 || index == count) => 0.5,
+            _ if self.stride == 1 => 1.0,
+            _ if index == count => 0.0,
+            _ => self.next(index, count) as f32,
+        }
+    }
+
     /// For how many sub-steps it bends in sub-step `index` of `count`: for a stride in the middle one of it. Then particles at rest
     /// have nearly no velocity between two strides.
     pub fn next(&mut self, index: u32, count: u32) -> u32 {
@@ -39,6 +49,18 @@ impl BendingSchedule {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A tick of forces bends for all of its sub-steps, too.
+    #[test]
+    fn forces_bend_for_each_sub_step() {
+        for stride in 1..=MOST_AT_ONCE {
+            for count in 1..=60 {
+                let mut schedule = BendingSchedule::new(stride);
+                let times = (0..=count).map(|index| schedule.times(index, count));
+                assert_eq!(times.sum::<f32>(), count as f32, "{stride} {count}");
+            }
+        }
+    }
 
     /// All sub-steps of a tick are bent for, each once, and none much earlier or later than it is due: from some sub-step on, in
     /// each.

@@ -1,11 +1,11 @@
 //! The springs of a grid, chain by chain, in one partition or several. A partition consists of blocks side by side for chains
 //! from row to row, and of rows for chains within rows.
 
-use std::{cmp::Ordering, ops::Range};
+use std::ops::Range;
 
 use super::second_pass::{GridSprings, SecondPass};
 use crate::{
-    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, Spring, SpringList, W},
+    cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W},
     solver::{
         kernels::{
             Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,
@@ -64,35 +64,22 @@ impl GridSolver {
 
     /// Of those of the springs in a list that join neighbours of the grid: of a torn or mapped one.
     pub fn of_list(grid: &ClothGrid, list: &SpringList) -> Self {
-        let (columns, rows) = (grid.columns(), grid.rows() as usize);
-        let layout = Layout::new(columns, grid.rows());
-        let first = |end: u32| [(end / columns) as usize, (end % columns) as usize];
-        let none = || vec![f32::NAN; grid.len()];
-        let [mut across, mut down, mut right, mut left] = [(); 4].map(|()| none());
-        let is_on_grid = |spring: &&Spring| spring.ends.iter().all(|end| *end < grid.len() as u32);
-        for spring in list.springs.iter().filter(is_on_grid) {
-            let [a, b] = spring.ends;
-            let [[row, column], [end_row, end_column]] = [a.min(b), a.max(b)].map(first);
-            let (band, begin) = match (end_row > row, end_column.cmp(&column)) {
-                (false, _) => (&mut across, a.min(b)),
-                (true, Ordering::Equal) => (&mut down, a.min(b)),
-                (true, Ordering::Greater) => (&mut right, a.min(b)),
-                (true, Ordering::Less) => (&mut left, a.max(b)),
-            };
-            band[begin as usize] = spring.compliance;
-        }
+        let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
+        let layout = Layout::new(grid.columns(), grid.rows());
+        let on_grid = list.on_grid(grid);
         let band = |step, of: &[f32], direction: Direction| {
             SpringBand::of_rows(grid.step_length(step), layout, rows, |number, column| {
                 let row = direction.row(number, rows);
-                let compliance = of[row * columns as usize + column as usize];
+                let compliance = of[row * columns + column as usize];
                 (!compliance.is_nan()).then_some(compliance)
             })
         };
-        let across = [(); 2].map(|()| band((0, 1), &across, Direction::Down));
-        let down = band((1, 0), &down, Direction::Down);
-        let has_diagonals = right.iter().chain(&left).any(|of| !of.is_nan());
+        let across = [(); 2].map(|()| band((0, 1), &on_grid.across, Direction::Down));
+        let down = band((1, 0), &on_grid.down, Direction::Down);
+        let (falling, rising) = (&on_grid.falling, &on_grid.rising);
+        let has_diagonals = falling.iter().chain(rising).any(|of| !of.is_nan());
         let diagonals = has_diagonals.then(|| {
-            [(&right, Direction::Right), (&left, Direction::Left)]
+            [(falling, Direction::Right), (rising, Direction::Left)]
                 .map(|(of, direction)| band((1, 1), of, direction))
         });
         Self::of_bands(layout, across, down, diagonals)

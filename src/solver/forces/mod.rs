@@ -28,6 +28,7 @@
 //! sub-steps, it is as cheap, and far more exact. An example is a 64² of 1 mm/N that falls, hung by its upper row.
 //! After half a second it is off by 0.01 mm with 92 sub-steps in 1/60 s; chains with 80 are off by 0.05 mm.
 
+mod list;
 #[cfg(test)]
 mod tests;
 
@@ -40,7 +41,10 @@ use super::{
     partitions::{MAX_PARTITIONS, in_partitions, take},
     step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, existing},
 };
-use crate::cloth::{Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, W, X, Y, Z};
+use crate::cloth::{
+    Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z,
+};
+use list::ForceList;
 
 /// Of the largest stable sub-step. The rest is for bending, which pushes with them.
 const MARGIN: f32 = 0.95;
@@ -57,11 +61,13 @@ const GRAVITY: f32 = 9.81;
 /// Fewer rows a partition than this, and waiting for the others would take longer than the work.
 const MIN_ROWS: usize = 32;
 
-/// The springs of a grid, none of them rigid.
+/// The springs of a grid, torn or not, none of them rigid.
 #[derive(Debug, Clone)]
 pub(super) struct Forces {
     springs: ElasticGrid,
-    /// Of all springs of a particle together (N/m), in a row at an end and in others.
+    /// Of the particles that tears made.
+    list: ForceList,
+    /// Of all springs of a particle together (N/m): in a row at an end and in others, or in each row.
     sums: [Vec<Lanes>; 2],
     /// Of two rows, for each partition.
     scratch: Vec<[Vec<Force>; 2]>,
@@ -77,11 +83,44 @@ impl Forces {
         let strip = springs.layout.strip as usize;
         Some(Self {
             sums: sums(&springs),
+            list: ForceList::default(),
             springs,
             scratch: vec![array::from_fn(|_| vec![Force::default(); strip])],
             borders: Vec::new(),
             partitions: 1,
         })
+    }
+
+    /// Of the springs of a torn or mapped grid, between particles that lie as `layout` says. `None` if one is rigid.
+    pub fn of_list(grid: &ClothGrid, layout: Layout, list: &SpringList) -> Option<Self> {
+        let springs = ElasticGrid::of_list(grid, layout, list)?;
+        let strip = layout.strip as usize;
+        let mut sums = vec![[0.0; LANES]; layout.blocks()];
+        for spring in &list.springs {
+            for end in spring.ends {
+                let slot = layout.slot_of(end as usize);
+                sums[slot.block][slot.lane] += 1.0 / spring.compliance;
+            }
+        }
+        Some(Self {
+            springs,
+            list: ForceList::new(list, grid.len() as u32, layout)?,
+            sums: [sums, Vec::new()],
+            scratch: vec![array::from_fn(|_| vec![Force::default(); strip])],
+            borders: Vec::new(),
+            partitions: 1,
+        })
+    }
+
+    /// The stiffness of all springs of the particles of a row together (N/m).
+    fn sums_of(&self, row: usize) -> &[Lanes] {
+        let Layout { rows, strip, .. } = self.springs.layout;
+        let [border, inner] = &self.sums;
+        if self.springs.is_by_row() {
+            return &border[row * strip as usize..][..strip as usize];
+        }
+        let is_end = row == 0 || row + 1 == rows as usize;
+        if is_end { border } else { inner }
     }
 
     /// With this many partitions of rows from now on, or fewer where there is too little to do.
@@ -97,12 +136,10 @@ impl Forces {
 
     /// The longest sub-step that is safe for particles of these masses, there (s); 0 if they are too far away for any.
     pub fn longest_substep(&self, blocks: &[Block]) -> f32 {
-        let rows = self.springs.layout.rows as usize;
         let (mut largest, mut farthest) = ([0.0_f32; LANES], [0.0_f32; LANES]);
         let each = blocks.chunks_exact(self.springs.layout.strip as usize);
         for (row, blocks) in each.enumerate() {
-            let is_end = row == 0 || row + 1 == rows;
-            for (block, sum) in blocks.iter().zip(&self.sums[usize::from(!is_end)]) {
+            for (block, sum) in blocks.iter().zip(self.sums_of(row)) {
                 let view = block.view();
                 for l in 0..LANES {
                     let own = view[W + l] * sum[l];
@@ -131,7 +168,7 @@ impl Forces {
     }
 
     /// A sub-step of particles that remember nothing but their velocity: forces alone, what bends, and air. The one after the last
-    /// only ends the tick, and is none.
+    /// only ends the tick, and is none. It bends for that many sub-steps.
     pub fn substep(
         &mut self,
         particles: &mut ClothParticles,
@@ -139,7 +176,7 @@ impl Forces {
         index: u32,
         damping_reference: &mut DampingReference,
         pins: &[PinMotion],
-        bending: Option<&mut Bending>,
+        bending: Option<(&mut Bending, f32)>,
         linearized: Option<&[LinearizedDrag]>,
         kernels: &Kernels,
     ) -> Option<SubStep> {
@@ -172,9 +209,12 @@ impl Forces {
             }
         }
         let blocks = particles.blocks_mut();
-        if let Some(bending) = bending {
-            // Before the kick, which keeps a part of it.
-            bending.push(blocks, weight / kept, kernels);
+        // Before the kick, which keeps a part of it.
+        self.list.push(blocks, weight / kept);
+        if let Some((bending, times)) = bending
+            && times > 0.0
+        {
+            bending.push(blocks, times * dt * dt / kept, kernels);
         }
         if let Some(linearized) = linearized {
             (kernels.air_push)(blocks, linearized, weight / kept, 1.0 / dt);
@@ -186,18 +226,16 @@ impl Forces {
 
     /// Whether each particle is heavy enough for a sub-step of `dt` (s). Ends with the first that is not.
     pub fn is_short(&self, blocks: &[Block], dt: f32) -> bool {
-        let rows = self.springs.layout.rows as usize;
         let most = (MARGIN * 2.0 / dt).powi(2) / 2.0;
         let mut each = blocks
             .chunks_exact(self.springs.layout.strip as usize)
             .enumerate();
         each.all(|(row, blocks)| {
-            let sums = &self.sums[usize::from(row > 0 && row + 1 < rows)];
             let own = |(block, sum): (&Block, &Lanes)| {
                 let view = block.view();
                 (0..LANES).all(|l| view[W + l] * sum[l] <= most)
             };
-            blocks.iter().zip(sums).all(own)
+            blocks.iter().zip(self.sums_of(row)).all(own)
         })
     }
 
@@ -216,6 +254,7 @@ impl Forces {
             let around: [&[Block]; 2] = [&[], &[]];
             (kernels.kick)(
                 blocks,
+                0,
                 around,
                 springs,
                 kick,
@@ -252,10 +291,11 @@ impl Forces {
             let above: &[Block] = partition
                 .checked_sub(1)
                 .map_or(&[], |border| row(2 * border));
-            (own, [above, row(2 * partition + 1)], scratch, moved)
+            let around = [above, row(2 * partition + 1)];
+            (own, first_row(partition), around, scratch, moved)
         });
-        in_partitions(parts, |(own, around, scratch, moved)| {
-            (kernels.kick)(own, around, springs, kick, scratch, moved);
+        in_partitions(parts, |(own, first, around, scratch, moved)| {
+            (kernels.kick)(own, first, around, springs, kick, scratch, moved);
         });
         array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))
     }
@@ -278,9 +318,11 @@ fn sums(springs: &ElasticGrid) -> [Vec<Lanes>; 2] {
         };
         let times = if is_inside { 2.0 } else { 1.0 };
         let sum = |column: u32| {
-            let across = ends(&springs.across[usize::from(is_inside)].stiffness, column);
-            let down = times * stiffness(&springs.down.stiffness, column);
-            let diagonal = times * ends(&springs.diagonal.stiffness, column);
+            let strip = layout.strip as usize;
+            let across = &springs.across[usize::from(is_inside)];
+            let across = ends(across.of_row(0, strip), column);
+            let down = times * stiffness(springs.down.of_row(0, strip), column);
+            let diagonal = times * ends(springs.falling.of_row(0, strip), column);
             across + down + diagonal
         };
         let lane = |block, lane| layout.column(block, lane).map_or(0.0, sum);

@@ -7,9 +7,14 @@
 //! A spring needs one division, no root, and some 26 additions and multiplications. A core with AVX2 starts two of
 //! these per cycle, each on eight lanes: 13 cycles for eight springs, 0.55 ns per spring at 3 GHz.
 
-use super::{barrier::one_block_at_a_time, commit::commit, each::three};
+use super::{
+    barrier::one_block_at_a_time,
+    commit::commit,
+    each::{four, three},
+};
 use crate::cloth::{
-    Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, MapInline, View, W, X,
+    Block, ClothGrid, Compliances, DX, DY, DZ, LANES, Lanes, Layout, MapInline, SpringList, View,
+    W, X,
 };
 
 /// x, y and z of the forces on eight particles (N).
@@ -17,13 +22,15 @@ pub(crate) type Force = [Lanes; 3];
 
 const NONE: Force = [[0.0; LANES]; 3];
 
-/// Springs of a grid that lie alike.
+/// Springs of a grid that lie alike: those of a row, which stands for all like it, or of each row.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Elastic {
     /// One over the squared length at rest (1/m²).
     inverse_rest_square: f32,
     /// Stiffness (N/m) of those that begin in a row's blocks, 0 where there is none.
-    pub stiffness: Vec<Lanes>,
+    stiffness: Vec<Lanes>,
+    /// From the springs of a row to those of the next; 0 where one row stands for all.
+    stride: usize,
 }
 
 impl Elastic {
@@ -36,24 +43,42 @@ impl Elastic {
         row: u32,
     ) -> Option<Self> {
         let is_there = step.0 < grid.rows();
+        Self::of_rows(grid.step_length(step), layout, 1, |_, column| {
+            is_there.then_some(())?;
+            let end = column.checked_add_signed(step.1)?;
+            (end < grid.columns()).then_some(())?;
+            compliances.of_strip(grid, step, (row.min(grid.rows() - 1), column))
+        })
+    }
+
+    /// Those of this length at rest (m), with the compliance (m/N) by the row and column that each begins in; `None` if one of
+    /// them is rigid. One row stands for all, or there are `rows`.
+    fn of_rows(
+        rest: f32,
+        layout: Layout,
+        rows: usize,
+        compliance: impl Fn(usize, u32) -> Option<f32>,
+    ) -> Option<Self> {
+        let strip = layout.strip as usize;
         let stiffness = |block: usize, lane: usize| {
-            let of = || {
-                is_there.then_some(())?;
-                let column = layout.column(block, lane)?;
-                let end = column.checked_add_signed(step.1)?;
-                (end < grid.columns()).then_some(())?;
-                compliances.of_strip(grid, step, (row.min(grid.rows() - 1), column))
-            };
-            of().map_or(0.0, f32::recip)
+            let column = layout.column(block % strip, lane)?;
+            compliance(block / strip, column)
         };
-        let lanes = |block| std::array::from_fn(|lane| stiffness(block, lane));
-        let stiffness: Vec<Lanes> = (0..layout.strip as usize).map(lanes).collect();
+        let lane = |block, lane| stiffness(block, lane).map_or(0.0, f32::recip);
+        let lanes = |block| std::array::from_fn(|l| lane(block, l));
+        let stiffness: Vec<Lanes> = (0..rows * strip).map(lanes).collect();
         let is_finite = stiffness.as_flattened().iter().all(|k| k.is_finite());
-        let rest = grid.step_length(step);
         is_finite.then_some(Self {
             inverse_rest_square: 1.0 / (rest * rest),
             stiffness,
+            stride: if rows > 1 { strip } else { 0 },
         })
+    }
+
+    /// The stiffness of those that begin in a row of so many blocks (N/m).
+    #[inline(always)]
+    pub fn of_row(&self, row: usize, strip: usize) -> &[Lanes] {
+        &self.stiffness[row * self.stride..][..strip]
     }
 }
 
@@ -64,8 +89,9 @@ pub(crate) struct ElasticGrid {
     /// Within a row: one on a border, one that is not.
     pub(crate) across: [Elastic; 2],
     pub(crate) down: Elastic,
-    /// Of no stiffness if there are none.
-    pub(crate) diagonal: Elastic,
+    /// To the right in the row below, and in the row above; of no stiffness if there are none.
+    pub(crate) falling: Elastic,
+    pub(crate) rising: Elastic,
 }
 
 impl ElasticGrid {
@@ -77,8 +103,36 @@ impl ElasticGrid {
             layout,
             across: [of((0, 1), 0)?, of((0, 1), 1)?],
             down: of((1, 0), 0)?,
-            diagonal: of((1, 1), 0)?,
+            falling: of((1, 1), 0)?,
+            rising: of((1, 1), 0)?,
         })
+    }
+
+    /// Of those springs of a list that are along the grid, between particles that lie as `layout` says; `None` if one is rigid.
+    pub fn of_list(grid: &ClothGrid, layout: Layout, list: &SpringList) -> Option<Self> {
+        let columns = grid.columns() as usize;
+        let on_grid = list.on_grid(grid);
+        let of = |step, of: &[f32], down: usize| {
+            let rest = grid.step_length(step);
+            Elastic::of_rows(rest, layout, layout.rows as usize, |row, column| {
+                let compliance = of.get((row + down) * columns + column as usize)?;
+                (!compliance.is_nan()).then_some(*compliance)
+            })
+        };
+        let across = of((0, 1), &on_grid.across, 0)?;
+        Some(Self {
+            layout,
+            across: [across.clone(), across],
+            down: of((1, 0), &on_grid.down, 0)?,
+            falling: of((1, 1), &on_grid.falling, 0)?,
+            // Found from the row above.
+            rising: of((1, 1), &on_grid.rising, 1)?,
+        })
+    }
+
+    /// Whether each row has springs of its own.
+    pub(crate) fn is_by_row(&self) -> bool {
+        self.down.stride > 0
     }
 
     /// The shorter distance between neighbours (m).
@@ -105,16 +159,23 @@ pub(crate) struct Kick {
     pub moves: bool,
 }
 
-/// The force on `a`, of a spring to `b`: `k (1 − L/ℓ)` of the way there.
+/// The part of the way from one end of a spring to the other that its force is (N/m), from its squared length over that at rest.
+/// It is `k (1 − L/ℓ)`.
 ///
 /// With δ what (ℓ/L)² is above 1, `1 − L/ℓ` is taken as `δ (4 δ + 8)/(5 δ² + 20 δ + 16)`, the Padé approximant of order [2/2] in δ:
 /// no root. It is off by 4·10⁻⁶ of itself where a spring is 10 % too long, by 9·10⁻⁴ at 50 %, by 0.8 % where it is twice as long,
 /// and finite where its ends coincide. It depends on the length alone, so that it is a force that keeps energy like any spring's.
 #[inline(always)]
+pub(crate) fn share(stiffness: f32, square: f32) -> f32 {
+    let over = square - 1.0;
+    stiffness * (over * (4.0 * over + 8.0)) / (over * (5.0 * over + 20.0) + 16.0)
+}
+
+/// The force on `a`, of a spring to `b`.
+#[inline(always)]
 fn force(a: &View, b: &View, stiffness: f32, inverse_rest_square: f32, l: usize) -> [f32; 3] {
     let [x, y, z] = three(|axis| b[X + axis * LANES + l] - a[X + axis * LANES + l]);
-    let over = (x * x + y * y + z * z) * inverse_rest_square - 1.0;
-    let share = stiffness * (over * (4.0 * over + 8.0)) / (over * (5.0 * over + 20.0) + 16.0);
+    let share = share(stiffness, (x * x + y * y + z * z) * inverse_rest_square);
     [share * x, share * y, share * z]
 }
 
@@ -134,7 +195,7 @@ struct Neighbours<'a> {
 fn act(
     own: &View,
     to: &Neighbours,
-    springs: [(&Lanes, f32); 3],
+    springs: [(&Lanes, f32); 4],
     carried: &Carried,
     on_own: &mut Force,
     on_below: &mut Force,
@@ -144,13 +205,13 @@ fn act(
         below,
         below_right,
     } = to;
-    let [across, down, diagonal] = springs;
+    let [across, down, falling, rising] = springs;
     let mut carries = [NONE; 2];
     for l in 0..LANES {
         let to_right = force(own, right, across.0[l], across.1, l);
         let to_below = force(own, below, down.0[l], down.1, l);
-        let falling = force(own, below_right, diagonal.0[l], diagonal.1, l);
-        let rising = force(below, right, diagonal.0[l], diagonal.1, l);
+        let falling = force(own, below_right, falling.0[l], falling.1, l);
+        let rising = force(below, right, rising.0[l], rising.1, l);
         for axis in 0..3 {
             let begin = to_right[axis] + (to_below[axis] + falling[axis]);
             on_own[axis][l] += carried[0][axis][l] + begin;
@@ -178,7 +239,7 @@ fn add_shifted(to: &mut Force, force: &Force) {
 fn row_and_below(
     [row, lower]: [&[Block]; 2],
     springs: &ElasticGrid,
-    is_end: bool,
+    (number, is_end): (usize, bool),
     [on_row, on_lower]: [&mut [Force]; 2],
 ) {
     let last = row.len() - 1;
@@ -187,11 +248,12 @@ fn row_and_below(
     let kinds = [
         &springs.across[usize::from(!is_end)],
         &springs.down,
-        &springs.diagonal,
+        &springs.falling,
+        &springs.rising,
     ];
-    let kinds = three(|kind| {
+    let kinds = four(|kind| {
         let of = kinds[kind];
-        (&of.stiffness[..=last], of.inverse_rest_square)
+        (of.of_row(number, last + 1), of.inverse_rest_square)
     });
     let mut carried = [NONE; 2];
     for j in 0..last {
@@ -200,7 +262,7 @@ fn row_and_below(
             below: lower[j].view(),
             below_right: lower[j + 1].view(),
         };
-        let springs = three(|kind| (&kinds[kind].0[j], kinds[kind].1));
+        let springs = four(|kind| (&kinds[kind].0[j], kinds[kind].1));
         let (own, below) = (&mut on_row[j], &mut on_lower[j]);
         carried = act(row[j].view(), &to, springs, &carried, own, below);
         one_block_at_a_time();
@@ -211,7 +273,7 @@ fn row_and_below(
         below: lower[last].view(),
         below_right: lower[0].shifted(),
     };
-    let springs = three(|kind| (&kinds[kind].0[last], kinds[kind].1));
+    let springs = four(|kind| (&kinds[kind].0[last], kinds[kind].1));
     let (own, below) = (&mut on_row[last], &mut on_lower[last]);
     let carried = act(row[last].view(), &to, springs, &carried, own, below);
     add_shifted(&mut on_row[0], &carried[0]);
@@ -220,8 +282,9 @@ fn row_and_below(
 
 /// The springs within the last row.
 #[inline(always)]
-fn row_alone(row: &[Block], springs: &Elastic, forces: &mut [Force]) {
+fn row_alone(row: &[Block], springs: &Elastic, number: usize, forces: &mut [Force]) {
     let last = row.len() - 1;
+    let stiffness = springs.of_row(number, row.len());
     let mut carried = NONE;
     for j in 0..=last {
         let (a, on_a) = (row[j].view(), &mut forces[j]);
@@ -230,13 +293,7 @@ fn row_alone(row: &[Block], springs: &Elastic, forces: &mut [Force]) {
             None => row[0].shifted(),
         };
         for l in 0..LANES {
-            let force = force(
-                a,
-                b,
-                springs.stiffness[j][l],
-                springs.inverse_rest_square,
-                l,
-            );
+            let force = force(a, b, stiffness[j][l], springs.inverse_rest_square, l);
             for axis in 0..3 {
                 on_a[axis][l] += carried[axis][l] + force[axis];
                 carried[axis][l] = -force[axis];
@@ -270,10 +327,11 @@ fn push(row: &mut [Block], forces: &[Force], kick: &Kick) {
 }
 
 /// Applies the springs' forces, and a pull on all, to the particles of some rows, and moves them. `around` are the rows
-/// before and behind them, of no blocks at the ends of the grid. Raises `moved` to the squares of displacements (m²).
+/// before and behind them, of no blocks at the ends of the grid. `first` is the number of the first row. Raises `moved` to the squares of displacements (m²).
 #[inline(always)]
 pub(crate) fn kick(
     blocks: &mut [Block],
+    first: usize,
     [above, below]: [&[Block]; 2],
     springs: &ElasticGrid,
     kick: &Kick,
@@ -285,17 +343,18 @@ pub(crate) fn kick(
     forces.fill(NONE);
     if !above.is_empty() {
         let ends = [&mut next[..], &mut forces[..]];
-        row_and_below([above, &blocks[..strip]], springs, false, ends);
+        let before = (first - 1, false);
+        row_and_below([above, &blocks[..strip]], springs, before, ends);
     }
     for row in 0..rows {
         let (own, rest) = blocks[row * strip..].split_at_mut(strip);
         let lower = rest.get(..strip).unwrap_or(below);
         if lower.is_empty() {
-            row_alone(own, &springs.across[0], forces);
+            row_alone(own, &springs.across[0], first + row, forces);
         } else {
-            let is_end = row == 0 && above.is_empty();
+            let own_number = (first + row, row == 0 && above.is_empty());
             let ends = [&mut forces[..], &mut next[..]];
-            row_and_below([own, lower], springs, is_end, ends);
+            row_and_below([own, lower], springs, own_number, ends);
         }
         push(own, forces, kick);
         if kick.moves {

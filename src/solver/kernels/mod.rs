@@ -39,7 +39,7 @@ pub(crate) use chains::{
 pub(crate) use commit::MIN_MOVE;
 pub(crate) use commit::commit;
 pub(crate) use each::four;
-pub(crate) use elastic::{ElasticGrid, Force, Kick, kick};
+pub(crate) use elastic::{ElasticGrid, Force, Kick, kick, share};
 pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets_back, relax_packets_there, turned};
 pub(crate) use pentadiagonal::{
     Factor, Vec3Lanes, chain_backward, chain_columns, chain_finish, chain_forward, chain_links,
@@ -234,7 +234,7 @@ kernels! {
     bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], step_scale: &StepScale),
     bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
-    kick(blocks: &mut [Block], around: [&[Block]; 2], springs: &ElasticGrid, kick: &Kick, forces: &mut [Vec<Force>; 2], moved: &mut Lanes),
+    kick(blocks: &mut [Block], first: usize, around: [&[Block]; 2], springs: &ElasticGrid, kick: &Kick, forces: &mut [Vec<Force>; 2], moved: &mut Lanes),
     relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
     relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
     plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Vec3Lanes]),

@@ -100,7 +100,9 @@ impl Solver {
         };
         let forces = match springs.storage() {
             SpringStorage::Grid(grid, compliances) => Forces::new(grid, compliances).map(Box::new),
-            SpringStorage::List(_) => None,
+            SpringStorage::List(list) => (list.grid.as_ref())
+                .and_then(|grid| Forces::of_list(grid, layout, list))
+                .map(Box::new),
         };
         Self {
             forces,

@@ -104,6 +104,11 @@ impl Solver {
             particles.set_substep(dt);
             particles.end_past();
             particles.zero_pin_displacements();
+            if let Some(bending) = &self.bending
+                && !step.has_layers
+            {
+                tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
+            }
             return tick;
         }
         // Jolts keep cloth that touches something awake, and two layers may pass each other by one.
@@ -291,7 +296,8 @@ impl Solver {
             tick.damping_reference.blow(air.memory().force);
         }
         let forces = self.forces.as_mut().expect("forces");
-        let bending = self.bending.as_mut();
+        let times = tick.bending.times(tick.next, tick.substeps());
+        let bending = self.bending.as_mut().map(|bending| (bending, times));
         let linearized = self.air.as_ref().map(|air| air.linearized());
         let damping_reference = &mut tick.damping_reference;
         let substep = forces.substep(

@@ -26,7 +26,7 @@ use crate::support::*;
 
 /// Runs, and ticks of each: by default, and where tests run at their full length.
 const RUNS: [u64; 2] = [2, 30];
-const TICKS: [usize; 2] = [200, 400];
+const TICKS: [usize; 2] = [100, 400];
 
 /// Farther than this nothing without a fault may be from its frame (m), as `ClothParticles::validate` has it.
 const FARTHEST: f32 = 1.0e18;
