@@ -185,6 +185,7 @@ impl Layout {
     pub fn is_valid(&self) -> bool {
         let Self { columns, rows, .. } = *self;
         columns.checked_mul(rows).is_some()
+            && (columns > 0 || self.count == 0)
             && (*self == Self::new(columns, rows)
                 || *self == Self::of_torn_grid(columns, self.count))
     }
@@ -316,6 +317,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A scene file may say anything: where there is no column, there is no particle.
+    #[test]
+    fn particles_need_columns() {
+        for count in [0, 1, 9] {
+            assert_eq!(Layout::of_torn_grid(0, count).is_valid(), count == 0);
+        }
+        let most = Layout::new(u32::MAX, 2);
+        assert!(!most.is_valid());
     }
 
     #[test]

@@ -19,9 +19,8 @@ use super::{
 /// masses that the game set individually. A change of stretch or bending builds the springs anew, which takes
 /// milliseconds for thousands of particles.
 ///
-/// A grid with a map of stretch or bending is solved as a mesh, which takes two to four times as long. Address its particles by
-/// their index then, row × columns + column: they lie in one row. The change to a mesh and back
-/// loses [creases](crate::solver::ClothCreasing). A [rope](crate::cloth::Cloth::rope) has no map of stretch or bending.
+/// A tick of a grid with a map of stretch or bending takes up to 1.2 times as long. Such a grid has the surface of a mesh, and the change
+/// to that and back loses [creases](crate::solver::ClothCreasing). A [rope](crate::cloth::Cloth::rope) has no map of stretch or bending.
 ///
 /// ```
 /// use bevy_drape::prelude::*;
@@ -135,7 +134,7 @@ impl ClothMaterialMap {
     pub(crate) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, ClothError> {
         let positive: Range = ("positive and finite", |of| of > 0.0 && of.is_finite());
         let or_zero: Range = ("zero or more, and finite", |of| of >= 0.0 && of.is_finite());
-        // All springs of a rope share one compliance, and it is not solved as a mesh.
+        // All springs of a rope share one compliance, and it never has the surface of a mesh.
         let is_rope = surface.rope_radius().is_some();
         let one: Range = ("1 on a rope", |of| of == 1.0);
         let [of_stretch, of_bending] = [positive, or_zero].map(|of| if is_rope { one } else { of });

@@ -9,8 +9,8 @@ use crate::cloth::arrays::MapInline;
 const RINGS: usize = 12;
 /// The same at the end of a tear, where the stress is large in a small place.
 const RINGS_AT_TIP: usize = 2;
-/// The part of the particles along a mesh that is a ring each: a patch is small beside the cloth.
-const RINGS_ALONG: usize = 2;
+/// Particles along a mesh for each ring of a patch: it is small beside the cloth.
+const PARTICLES_A_RING: usize = 2;
 
 /// The stress around each particle, times the area of its patch (N m), and that area (m²).
 ///
@@ -58,7 +58,7 @@ impl Stress {
                 *sheared += half * direction * Vec3::new(direction.y, direction.z, direction.x);
             }
         });
-        let rings = (surface.particles_along() / RINGS_ALONG).clamp(RINGS_AT_TIP + 1, RINGS);
+        let rings = (surface.particles_along() / PARTICLES_A_RING).clamp(RINGS_AT_TIP + 1, RINGS);
         for ring in 0..rings {
             if ring == RINGS_AT_TIP {
                 at_tip.clone_from(around);

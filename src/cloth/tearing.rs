@@ -17,7 +17,7 @@ use crate::cloth::arrays::MapInline;
 ///
 /// The load of a thread is that at which its material is stretched as far (N/m, the force on a strip over its width). On a mesh
 /// it is also no more than that of the patch around, of 3 to 12 rings of faces, by the forces that its springs apply. At the end of a tear,
-/// the patch has two rings. A mesh that may tear takes at least 20 sub-steps in 1/64 s. A
+/// the patch has two rings. By default, a mesh that may tear takes at least 20 sub-steps in 1/64 s. A
 /// [map](crate::cloth::ClothMaterialMap) of stretch changes the stretch, not the strength. So the
 /// cloth needs a compliance: none of [`ClothMaterial`]'s presets for fabrics is rigid. Beside a pin a coarse cloth is
 /// stretched more than it should be, see [`ClothSettings`](crate::solver::ClothSettings); that counts as load, too.

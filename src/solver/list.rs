@@ -159,7 +159,7 @@ impl ListSolver {
     /// median particle (rad/s): `ω² = 3/2 w Σ F/l`, as of a lattice of even triangles. Of springs along edges that give.
     ///
     /// The rows are stored by then, and serve as memory: the sums lie beside their displacements.
-    fn tensions(&mut self) -> (f32, f32) {
+    pub fn tensions(&mut self) -> [f32; 2] {
         let rows = &mut self.rows;
         let mut material = 0.0_f32;
         let scale = self.step_scale.inverse_weight;
@@ -202,13 +202,13 @@ impl ListSolver {
         // Of pinned particles, and of what is no particle, it is 0: they are not counted.
         let middle = (below + above) / 2;
         if middle < below || above == 0 {
-            return (material, 0.0);
+            return [material, 0.0];
         }
         let from_above = below + above - middle;
         let at = rows.len() - from_above;
         let of = |row: &Row| row.moved.w;
         let (_, median, _) = rows.select_nth_unstable_by(at, |a, b| of(a).total_cmp(&of(b)));
-        (material, of(median).sqrt())
+        [material, of(median).sqrt()]
     }
 
     /// Solves all springs forward.
@@ -267,10 +267,10 @@ impl SpringSolver for ListSolver {
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let (material, ripple) = if motion.measures && !self.chains.is_empty() {
+        let [material, ripple] = if motion.measures && !self.chains.is_empty() {
             self.tensions()
         } else {
-            (0.0, 0.0)
+            [0.0; 2]
         };
         let stretch = motion.measures.then(|| Stretch {
             material,

@@ -6,7 +6,7 @@
 
 use super::{
     chains::GridSolver,
-    kernels::{Direction, Kernels, StepScale},
+    kernels::{Kernels, StepScale},
     list::ListSolver,
     spring_solver::{Motion, SolvedSubstep, SpringSolver},
     stretch::Stretch,
@@ -51,34 +51,35 @@ impl SpringSolver for TornGridSolver {
         true
     }
 
-    fn partitions(&self, _: usize) -> usize {
-        1
+    fn partitions(&self, wanted: usize) -> usize {
+        self.grid.partitions(wanted)
     }
 
-    fn substep(&mut self, blocks: &mut [Block], motion: &Motion, _: usize) -> SolvedSubstep {
+    fn substep(
+        &mut self,
+        blocks: &mut [Block],
+        motion: &Motion,
+        partitions: usize,
+    ) -> SolvedSubstep {
         let kernels = motion.kernels;
+        let partitions = self.partitions(partitions);
         let count = self.grid.blocks();
-        for direction in [Direction::Right, Direction::Left] {
-            self.grid
-                .solve_down(&mut blocks[..count], direction, kernels);
-        }
+        (self.grid).solve_diagonals(&mut blocks[..count], kernels, partitions);
         self.list.load_from(&self.slots, blocks);
         self.list.solve_there(kernels);
         self.list.store_to(&self.slots, blocks);
-        self.grid.solve_across(&mut blocks[..count], kernels);
-        self.grid
-            .solve_down(&mut blocks[..count], Direction::Down, kernels);
+        (self.grid).solve_along(&mut blocks[..count], kernels, partitions);
         self.list.load_from(&self.slots, blocks);
         self.list.solve_back(kernels);
         self.list.store_to(&self.slots, blocks);
-        self.grid.solve_again(&mut blocks[..count], motion, 1);
-        let mut solved = self.grid.end(blocks, motion);
+        (self.grid).solve_again(&mut blocks[..count], motion, partitions);
+        let mut solved = self.grid.end(blocks, motion, partitions);
         if let Some(stretch) = &mut solved.stretch {
-            let Stretch {
-                structural, bound, ..
-            } = self.stretch_of_list(blocks);
-            stretch.structural = stretch.structural.max(structural);
-            stretch.bound = stretch.bound.max(bound);
+            let of_list = self.stretch_of_list(blocks);
+            let [material, _] = self.list.tensions();
+            stretch.structural = stretch.structural.max(of_list.structural);
+            stretch.bound = stretch.bound.max(of_list.bound);
+            stretch.material = stretch.material.max(material);
         }
         solved
     }

@@ -357,8 +357,8 @@ fn a_map_leaves_the_strength_alone() {
     }
 }
 
-/// Irregular meshes that hang tear within 5 % of their strength by default, while gravity grows slowly until they are in two. At rest a
-/// patch bears some 5 % more or less than the mean, see `cloth/stress.rs`. They hang with their own weight alone, or with a part at their end
+/// Irregular meshes that a dense part hangs from tear within 6 % of their strength by default, while gravity grows slowly until they are in
+/// two; under their own weight they may hold a little longer. At rest a patch bears some 5 % more or less than the mean, see `cloth/stress.rs`. They hang with their own weight alone, or with a part at their end
 /// that is ten or a hundred times as dense. What counts is the weight below the first edge that tears. Under their own weight, a patch at
 /// the upper border bears what hangs 0.8 σ lower, with a reach of σ = √(2n/3) spacings for n rings: they may hold by so much more. Damping
 /// leaves some motion: without any, a weight would sink behind gravity. The finest meshes run where tests run at their full length.
@@ -388,7 +388,7 @@ fn a_mesh_tears_at_its_strength() {
         let reach = (2.0 * rings / 3.0_f32).sqrt() * spacing;
         // The part of the weight above the lower end, of which the patch misses as much as it reaches down.
         let own = 0.9 / (0.9 + 0.1 * (1.0 + dense));
-        let allowed = 0.95..1.05 + 0.8 * reach * own;
+        let allowed = 0.94..1.06 + 0.8 * reach * own;
         assert!(allowed.contains(&begins), "{begins} {allowed:?}");
         assert!(apart < 1.2 * allowed.end, "{apart}");
     }

@@ -193,7 +193,7 @@ impl ClothParticles {
         self.len() == 0
     }
 
-    /// Number of particles in a row: all of them, unless they are those of a whole grid.
+    /// Number of particles in a row: all of them, unless they are those of a grid that is neither torn nor mapped.
     pub fn columns(&self) -> u32 {
         let layout = self.valid_layout();
         if layout.has_cells {
@@ -203,7 +203,7 @@ impl ClothParticles {
         }
     }
 
-    /// Number of particles in a column: 1, unless they are those of a whole grid.
+    /// Number of particles in a column: 1, unless they are those of a grid that is neither torn nor mapped.
     pub fn rows(&self) -> u32 {
         let layout = self.valid_layout();
         if layout.has_cells { layout.rows } else { 1 }
@@ -213,8 +213,8 @@ impl ClothParticles {
     pub fn index(&self, id: impl Into<ParticleId>) -> Option<usize> {
         let index = match id.into() {
             ParticleId::Index(index) => index,
-            ParticleId::Cell(row, column) if column < self.layout.columns => {
-                row as usize * self.layout.columns as usize + column as usize
+            ParticleId::Cell(row, column) if column < self.columns() => {
+                row as usize * self.columns() as usize + column as usize
             }
             ParticleId::Cell(..) => return None,
         };

@@ -12,7 +12,7 @@ impl ClothParticles {
         let is_laid_out = self.layout.is_valid() && self.layout.len() <= MAX_PARTICLES;
         let blocks = self.blocks.len();
         let is_past = self.past.blocks.is_empty() || self.past.blocks.len() == blocks;
-        let is_empty = self.layout.len() == 0;
+        let is_empty = self.layout == Layout::default();
         self.is_stepped()
             && is_past
             && (is_empty && blocks == 0 || is_laid_out && blocks == self.layout.blocks())

@@ -2,7 +2,12 @@
 
 use std::{cmp::Ordering, ops::Range};
 
-use crate::cloth::{grid::ClothGrid, material::ClothStiffening, spring::Spring, surface::Chains};
+use crate::cloth::{
+    grid::ClothGrid,
+    material::ClothStiffening,
+    spring::{Spring, SpringKind},
+    surface::Chains,
+};
 
 /// The compliances of springs along the rows, columns and diagonals of a grid (m/N), particle by particle.
 #[derive(Debug)]
@@ -109,10 +114,15 @@ impl SpringList {
             stiffening: self.stiffening,
             ..Self::default()
         };
-        let places = list.add(&springs, particles.len());
-        list.chains = self
-            .chains
-            .renamed(|edge| places[chosen.partition_point(|other| *other < edge as usize)]);
+        // As in this list, those along edges come last.
+        let is_across = |spring: &Spring| spring.kind != SpringKind::Structural;
+        let (across, along) = springs.split_at(springs.partition_point(is_across));
+        list.add(across, particles.len());
+        let places = list.add(along, particles.len());
+        list.chains = self.chains.renamed(|edge| {
+            let at = chosen.partition_point(|other| *other < edge as usize);
+            places[at - across.len()]
+        });
         for chain in list.chains.colours.iter_mut().flatten() {
             chain.first = number(chain.first);
         }

@@ -277,6 +277,14 @@ impl Springs {
         }
     }
 
+    /// Whether they are solved as rows, columns and diagonals: those of a grid, torn or mapped or not, without a knee.
+    pub(crate) fn are_of_grid(&self) -> bool {
+        match &self.storage {
+            SpringStorage::Grid(..) => true,
+            SpringStorage::List(list) => list.grid.is_some(),
+        }
+    }
+
     /// The storage, for the solver.
     pub(crate) fn storage(&self) -> &SpringStorage {
         &self.storage

@@ -299,11 +299,8 @@ impl Surface {
         match &self.grid {
             Some(grid) => Layout::new(grid.columns(), grid.rows()),
             None => match self.rest_grid() {
-                // The rows of a rope have one particle each, and its lanes are empty.
-                Some(grid) if grid.columns() > 1 => {
-                    Layout::of_torn_grid(grid.columns(), self.len() as u32)
-                }
-                _ => Layout::new(self.len() as u32, 1),
+                Some(grid) => Layout::of_torn_grid(grid.columns(), self.len() as u32),
+                None => Layout::new(self.len() as u32, 1),
             },
         }
     }

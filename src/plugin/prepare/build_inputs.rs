@@ -67,7 +67,7 @@ impl BuildInputs<'_> {
         }
     }
 
-    /// Whether it is a grid whose springs differ or stiffen, which is solved as a mesh. What is torn is a mesh already.
+    /// Whether it is a grid whose springs differ or stiffen, which has the surface of a mesh. What is torn has it already.
     pub(super) fn is_as_mesh(&self) -> bool {
         let has_own_springs = || {
             let of_map = |(map, _): (&ClothMaterialMap, Tick)| map.has_stiffness(self.material);

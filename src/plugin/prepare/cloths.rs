@@ -221,7 +221,7 @@ fn build_cloth(
             .attachments
             .map_or(&[][..], ClothAttachments::as_slice),
         scale,
-        has_layers: inputs.self_collision.is_some(),
+        has_layers: (inputs.self_collision.as_ref()).is_some_and(|of| of.with_itself),
         is_async: around.async_builds.contains(cloth.entity),
     };
     let is_new = built.from.is_some() || particles.is_empty();

@@ -1,6 +1,6 @@
 //! How long a tick takes at least.
 
-use crate::cloth::{ClothMaterial, Springs, Surface};
+use crate::cloth::{ClothMaterial, Springs};
 
 /// What a spring of a grid costs in a sub-step (s), at least. `cargo bench --profile dev --bench solver` measures 1.5 to 2.2 ns on a thread
 /// of a 2-core AMD EPYC for 64² to 512² particles; this leaves room for a faster machine.
@@ -14,13 +14,12 @@ const BENT_MESH: f32 = 2.0;
 
 /// What the sub-steps of a tick cost at least (s) on so many `threads`, whatever the cloth touches.
 pub(crate) fn least_cost(
-    surface: &Surface,
     springs: &Springs,
     material: &ClothMaterial,
     substeps: u32,
     threads: usize,
 ) -> f32 {
-    let spring = if surface.as_grid().is_some() {
+    let spring = if springs.are_of_grid() {
         GRID_SPRING
     } else if material.bend_rigidity > 0.0 {
         MESH_SPRING * BENT_MESH
@@ -47,7 +46,7 @@ mod tests {
             let material = ClothMaterial::COTTON;
             let springs = Springs::of_surface(&surface, &material);
             let substeps = Substepping::needed(surface.particles_along(), tick);
-            least_cost(&surface, &springs, &material, substeps, 1) / tick
+            least_cost(&springs, &material, substeps, 1) / tick
         };
         assert!(cost(64) < 0.1, "{}", cost(64));
         assert!(cost(128) < 0.5, "{}", cost(128));

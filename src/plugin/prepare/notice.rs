@@ -32,7 +32,7 @@ pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices:
         true => 1,
         false => threads(),
     };
-    let cost = least_cost(surface, springs, material, step.substeps, threads);
+    let cost = least_cost(springs, material, step.substeps, threads);
     let slow = (cost > step.seconds).then(|| {
         format!(
             "{} particles in {} sub-steps take at least {:.0} ms a tick, and a tick lasts {:.1} ms: use fewer particles or sub-steps; a \

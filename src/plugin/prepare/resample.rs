@@ -35,7 +35,6 @@ pub(crate) fn resample(
         let in_row = |row| of(row, column).lerp(of(row, column + 1), across);
         in_row(row).lerp(in_row(row + 1), down)
     };
-    // A grid that is solved as a mesh has them in one row.
     let index = |(row, column): (u32, u32)| to.index(row, column) as usize;
     for cell in to.cells() {
         new.set_position(index(cell), between(cell, ClothParticles::position))?;

@@ -85,10 +85,12 @@ pub(super) fn prepare_step(
         Some(_) => needed.max(state.layer_substeps),
         None => needed,
     };
-    let is_stress_asked = inputs.tearing.is_some() && surface.rest_grid().is_none();
-    let needed = match settings.substepping {
-        Substepping::Automatic if is_stress_asked => needed.max(Substepping::for_stress(one)),
-        _ => needed,
+    let by_patches = surface.rest_grid().is_none() || material.stiffening.is_some();
+    let for_stress = match settings.substepping {
+        Substepping::Automatic if inputs.tearing.is_some() && by_patches => {
+            Substepping::for_stress(one)
+        }
+        _ => 0,
     };
     if !state.rest.is_asleep() {
         // The tick says so again.
@@ -96,7 +98,7 @@ pub(super) fn prepare_step(
     }
     scratch.step = Some(TickStep {
         seconds,
-        substeps: state.control.substeps(settings.substepping, needed),
+        substeps: (state.control.substeps(settings.substepping, needed)).max(for_stress),
         acceleration,
         damping: material.damping,
         damped_against: carrier(&scratch.pins, built.pinned.len(), seconds),

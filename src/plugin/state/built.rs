@@ -149,7 +149,7 @@ impl ClothBuilt {
         (self.shared.recipe.as_ref()).map_or(&NONE, |recipe| &recipe.tears)
     }
 
-    /// Whether it is a grid that is solved as a mesh, though nothing is torn.
+    /// Whether it is a grid that has the surface of a mesh, though nothing is torn.
     pub(crate) fn is_as_mesh(&self) -> bool {
         (self.shared.recipe.as_ref()).is_some_and(|recipe| recipe.as_mesh)
     }
@@ -171,15 +171,14 @@ impl ClothBuilt {
         })
     }
 
-    /// How many times as dense a mesh is where it is densest as where it is least; 0 if it is as dense everywhere. The chains of a grid
-    /// need no more sub-steps for that.
+    /// The largest density of a mesh over its mean; 0 if it is as dense everywhere. The chains of a grid need no more sub-steps for that.
     pub(crate) fn density_ratio(&self) -> f32 {
         let factors = self.from.as_ref().map(|from| &from.factors.density);
         match factors {
             Some(density)
                 if density.most > density.least && self.surface().rest_grid().is_none() =>
             {
-                density.most / density.least
+                density.most / density.mean
             }
             _ => 0.0,
         }

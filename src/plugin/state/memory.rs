@@ -108,7 +108,7 @@ pub(crate) struct InputMemory {
     pub air: AirState,
     /// How many of its torn edges have opened: the last ones do so as the next tick begins.
     pub opened: usize,
-    /// Whether it was a grid that is solved as a mesh, though nothing was torn.
+    /// Whether it was a grid that has the surface of a mesh, though nothing was torn.
     pub as_mesh: bool,
 }
 

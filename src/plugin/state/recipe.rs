@@ -17,7 +17,7 @@ pub(crate) struct Recipe {
     /// The grain of a mesh with a weft.
     pub grain: Option<ClothGrain>,
     pub tears: ClothTears,
-    /// Whether a grid without tears is solved as a mesh.
+    /// Whether a grid without tears has the surface of a mesh.
     pub as_mesh: bool,
 }
 

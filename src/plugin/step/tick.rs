@@ -169,7 +169,7 @@ impl IntegrateQueryItem<'_, '_> {
             substep: step.seconds / count,
             damping: step.damping,
             material_stretch: self.built.largest_material_stretch,
-            holds_weight: self.built.surface().as_grid().is_some()
+            holds_weight: self.built.shared.springs.are_of_grid()
                 || !self.built.solver.tethers().is_empty(),
             masses: self.built.masses,
             distance: (Vec3::from(root.center).length() - root.radius()).max(0.0),

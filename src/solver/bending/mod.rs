@@ -96,6 +96,11 @@ impl Bending {
         }
     }
 
+    /// Whether its surface is that of a mesh.
+    pub(super) fn is_of_mesh(&self) -> bool {
+        matches!(self.of, Kind::Mesh(_))
+    }
+
     /// In one of how many sub-steps of `dt` (s) it needs to bend, for all of them: their weights together leave it soft. For the
     /// fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable. A grid bends in each.
     pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {

@@ -7,6 +7,8 @@ pub(super) const MOST_AT_ONCE: u32 = 4;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BendingSchedule {
     stride: u32,
+    /// Whether it began with a stride of more than one.
+    is_strided: bool,
     /// Sub-steps that it has bent for, all from the first one on.
     done: u32,
 }
@@ -14,7 +16,11 @@ pub(crate) struct BendingSchedule {
 impl BendingSchedule {
     /// It bends in one of `stride` sub-steps.
     pub fn new(stride: u32) -> Self {
-        Self { stride, done: 0 }
+        Self {
+            stride,
+            is_strided: stride > 1,
+            done: 0,
+        }
     }
 
     /// From now on it bends in each sub-step.
@@ -22,13 +28,13 @@ impl BendingSchedule {
         self.stride = 1;
     }
 
-    /// The same in a tick of forces, whose first and last kicks are halves: as many as the kick where it bends in each.
-    pub fn times(&mut self, index: u32, count: u32) -> f32 {
-        match index {
-            _ if self.stride == 1 && (index == 0 || index == count) => 0.5,
-            _ if self.stride == 1 => 1.0,
-            _ if index == count => 0.0,
-            _ => self.next(index, count) as f32,
+    /// The same in a tick of forces, whose first and last kicks are for half a sub-step: as the kick, where it bends in each.
+    pub fn for_kick(&mut self, index: u32, count: u32) -> f32 {
+        match (self.is_strided, index) {
+            (true, index) if index == count => 0.0,
+            (true, index) => self.next(index, count) as f32,
+            (false, index) if index == 0 || index == count => 0.5,
+            (false, _) => 1.0,
         }
     }
 
@@ -55,9 +61,17 @@ mod tests {
     fn forces_bend_for_each_sub_step() {
         for stride in 1..=MOST_AT_ONCE {
             for count in 1..=60 {
-                let mut schedule = BendingSchedule::new(stride);
-                let times = (0..=count).map(|index| schedule.times(index, count));
-                assert_eq!(times.sum::<f32>(), count as f32, "{stride} {count}");
+                for shortened in 0..=count {
+                    let mut schedule = BendingSchedule::new(stride);
+                    let kicks = (0..=count).map(|index| {
+                        if index == shortened {
+                            schedule.bend_in_each();
+                        }
+                        schedule.for_kick(index, count)
+                    });
+                    let all = kicks.sum::<f32>();
+                    assert_eq!(all, count as f32, "{stride}, {shortened} of {count}");
+                }
             }
         }
     }

@@ -1,15 +1,16 @@
 //! The springs of a grid, chain by chain, in one partition or several. A partition consists of blocks side by side for chains
 //! from row to row, and of rows for chains within rows.
 
-use std::ops::Range;
-
-use super::second_pass::{GridSprings, SecondPass};
+use super::{
+    bands::GridBands,
+    second_pass::{GridSprings, SecondPass},
+};
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W},
     solver::{
         kernels::{
             Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,
-            StepScale, largest,
+            StepScale,
         },
         partitions::{MAX_PARTITIONS, in_partitions, take},
         spring_solver::{Motion, SolvedSubstep, SpringSolver},
@@ -25,11 +26,7 @@ const MIN_BLOCKS: usize = 2;
 #[derive(Debug, Clone)]
 pub(crate) struct GridSolver {
     layout: Layout,
-    /// Within a row: one on a border, one that is not.
-    across: [SpringBand; 2],
-    down: SpringBand,
-    /// To the right and to the left, if there are any.
-    diagonals: Option<[SpringBand; 2]>,
+    bands: GridBands,
     scratch: Scratch,
     /// One for each partition.
     rows: Vec<RowScratch>,
@@ -38,8 +35,6 @@ pub(crate) struct GridSolver {
     second_pass: SecondPass,
     /// That softnesses hold for.
     step_scale: StepScale,
-    /// Largest stiffness over length of springs across and down (N/m²), 0 of those that don't give.
-    ripple_stiffness: [f32; 2],
 }
 
 /// Results of a partition.
@@ -52,59 +47,23 @@ struct PartitionResult {
 impl GridSolver {
     pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Self {
         let layout = Layout::new(grid.columns(), grid.rows());
-        let springs = |step, row| SpringBand::new(grid, layout, compliances, step, row);
-        let across = [springs((0, 1), 0), springs((0, 1), 1)];
-        let diagonal = || springs((1, 1), 0);
-        let diagonals = compliances
-            .shear
-            .is_finite()
-            .then(|| [(); 2].map(|()| diagonal()));
-        Self::of_bands(layout, across, springs((1, 0), 0), diagonals)
+        Self::of_bands(layout, GridBands::new(grid, layout, compliances))
     }
 
     /// Of those of the springs in a list that join neighbours of the grid: of a torn or mapped one.
     pub fn of_list(grid: &ClothGrid, list: &SpringList) -> Self {
-        let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
         let layout = Layout::new(grid.columns(), grid.rows());
-        let on_grid = list.on_grid(grid);
-        let band = |step, of: &[f32], direction: Direction| {
-            SpringBand::of_rows(grid.step_length(step), layout, rows, |number, column| {
-                let row = direction.row(number, rows);
-                let compliance = of[row * columns + column as usize];
-                (!compliance.is_nan()).then_some(compliance)
-            })
-        };
-        let across = [(); 2].map(|()| band((0, 1), &on_grid.across, Direction::Down));
-        let down = band((1, 0), &on_grid.down, Direction::Down);
-        let (falling, rising) = (&on_grid.falling, &on_grid.rising);
-        let has_diagonals = falling.iter().chain(rising).any(|of| !of.is_nan());
-        let diagonals = has_diagonals.then(|| {
-            [(falling, Direction::Right), (rising, Direction::Left)]
-                .map(|(of, direction)| band((1, 1), of, direction))
-        });
-        Self::of_bands(layout, across, down, diagonals)
+        Self::of_bands(layout, GridBands::of_list(grid, layout, list))
     }
 
-    fn of_bands(
-        layout: Layout,
-        across: [SpringBand; 2],
-        down: SpringBand,
-        diagonals: Option<[SpringBand; 2]>,
-    ) -> Self {
-        let strip = layout.strip as usize;
-        let ripple_stiffness =
-            [&across[1], &down].map(|springs| springs.stiffness() * springs.inverse_rest);
-        let is_elastic = across.iter().chain([&down]).any(SpringBand::is_elastic);
+    fn of_bands(layout: Layout, bands: GridBands) -> Self {
         Self {
             layout,
-            second_pass: SecondPass::new(layout, is_elastic),
+            second_pass: SecondPass::new(layout, bands.is_elastic()),
             numbers: (0..layout.rows).collect(),
-            across,
-            down,
-            ripple_stiffness,
-            diagonals,
+            bands,
             scratch: Scratch::new(layout),
-            rows: vec![RowScratch::new(strip)],
+            rows: vec![RowScratch::new(layout.strip as usize)],
             step_scale: StepScale::default(),
         }
     }
@@ -121,15 +80,7 @@ impl GridSolver {
         direction: Direction,
         kernels: &Kernels,
     ) {
-        let [right, left] = match &self.diagonals {
-            Some([right, left]) => [Some(right), Some(left)],
-            None => [None; 2],
-        };
-        let Some(springs) = (match direction {
-            Direction::Down => Some(&self.down),
-            Direction::Right => right,
-            Direction::Left => left,
-        }) else {
+        let Some(springs) = self.bands.of(direction) else {
             return;
         };
         let strip = self.layout.strip as usize;
@@ -147,7 +98,7 @@ impl GridSolver {
             scratch: &mut self.rows[0],
             pulled: &mut self.second_pass.pulled[0],
         };
-        solve_rows(&mut rows, &self.across, kernels);
+        solve_rows(&mut rows, &self.bands.across, kernels);
     }
 
     /// The second pass over rows and columns, after all chains were solved in this many partitions.
@@ -157,8 +108,8 @@ impl GridSolver {
             self.scratch.multipliers(strip, partitions, pulled);
         }
         let grid = GridSprings {
-            across: &self.across,
-            down: &self.down,
+            across: &self.bands.across,
+            down: &self.bands.down,
             rows: &mut self.rows[0],
             columns: &mut self.scratch,
         };
@@ -171,60 +122,17 @@ impl GridSolver {
         second_pass.solve(blocks, &mut grid, motion, partitions);
     }
 
-    /// The lengths of the springs that begin in these rows.
-    fn measure_rows(&self, blocks: &[Block], rows: Range<usize>, kernels: &Kernels) -> Longest {
-        let mut longest = Longest::default();
-        let strip = self.layout.strip as usize;
-        let [across, _] = &self.across;
-        let last = self.layout.rows as usize - 1;
-        for row in rows {
-            let (upper, lower) = blocks[row * strip..].split_at(strip);
-            (kernels.measure_within)(upper, across.holds_of(row, strip), &mut longest);
-            if row < last {
-                let lower = &lower[..strip];
-                (kernels.measure_down)(upper, lower, self.down.holds_of(row, strip), &mut longest);
-                if let Some([right, left]) = &self.diagonals {
-                    let left = left.holds_of(Direction::Left.row(row + 1, last + 1), strip);
-                    (kernels.measure_diagonal)(
-                        upper,
-                        lower,
-                        right.holds_of(row, strip),
-                        &mut longest,
-                    );
-                    (kernels.measure_diagonal)(lower, upper, left, &mut longest);
-                }
-            }
-        }
-        longest
-    }
-
-    fn stretch(&self, longest: &Longest) -> Stretch {
-        let ratio = |lanes: &Lanes, springs: &SpringBand| {
-            (lanes.iter().copied().fold(0.0, f32::max) / (springs.rest * springs.rest)).sqrt()
-        };
-        let structural =
-            ratio(&longest.across, &self.across[0]).max(ratio(&longest.down, &self.down));
-        let diagonal = self.diagonals.iter();
-        let diagonal = diagonal.map(|[springs, _]| ratio(&longest.diagonal, springs));
-        let bound = diagonal.fold(structural, f32::max);
-        Stretch::of_ratios(structural, bound)
-    }
-
-    /// The stretch of the material, as a fraction of its length, from the elongations of springs (m).
-    fn material(&self, [across, down]: &[Lanes; 2]) -> f32 {
-        (largest(*across) / self.across[0].rest).max(largest(*down) / self.down.rest)
-    }
-
     /// The angular frequency of the fastest ripples (rad/s), in which neighbours swing against each other: ω² = 4 Σ F/(m l) over
     /// a chain across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
     /// membrane has it everywhere, and what hangs by a corner is not a membrane.
     fn ripple(&self, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
-        let mut strips = [0.0; LANES];
-        for (lane, strip) in strips.iter_mut().enumerate() {
-            for (given, stiffness) in given.iter().zip(self.ripple_stiffness) {
-                *strip += given[lane] * stiffness;
-            }
-        }
+        let mut strips = if self.bands.is_by_row() {
+            // Where springs differ, the longest need not pull most.
+            self.bands
+                .tensions(&self.second_pass.pulled, self.step_scale)
+        } else {
+            self.bands.tensions_of(given)
+        };
         strips.sort_by(|a, b| b.total_cmp(a));
         let pull = strips[LANES / 2 - 1];
         if pull == 0.0 {
@@ -238,32 +146,66 @@ impl GridSolver {
         2.0 * (pull * heaviest).sqrt()
     }
 
-    /// Solves all chains in this many partitions, more than one.
-    fn solve_in_partitions(&mut self, blocks: &mut [Block], kernels: &Kernels, partitions: usize) {
-        let strip = self.layout.strip as usize;
-        if let Some([right, left]) = &self.diagonals {
-            for (direction, springs) in [(Direction::Right, right), (Direction::Left, left)] {
-                let all = self.scratch.split(direction, (strip, partitions), blocks);
-                in_partitions(all, |mut partition| solve(&mut partition, springs, kernels));
-            }
+    /// Solves the chains along diagonals, in this many partitions.
+    pub(crate) fn solve_diagonals(
+        &mut self,
+        blocks: &mut [Block],
+        kernels: &Kernels,
+        partitions: usize,
+    ) {
+        for direction in [Direction::Right, Direction::Left] {
+            self.down_in_partitions(blocks, direction, kernels, partitions);
         }
-        self.across_in_partitions(blocks, kernels, partitions);
-        let down = &self.down;
-        let all = self
-            .scratch
-            .split(Direction::Down, (strip, partitions), blocks);
-        in_partitions(all, |mut partition| solve(&mut partition, down, kernels));
     }
 
-    /// Ends a sub-step. Behind the grid's blocks there may be others.
-    pub(crate) fn end(&self, blocks: &mut [Block], motion: &Motion) -> SolvedSubstep {
+    /// Solves rows, and then columns, in this many partitions.
+    pub(crate) fn solve_along(
+        &mut self,
+        blocks: &mut [Block],
+        kernels: &Kernels,
+        partitions: usize,
+    ) {
+        if partitions > 1 {
+            self.across_in_partitions(blocks, kernels, partitions);
+        } else {
+            self.solve_across(blocks, kernels);
+        }
+        self.down_in_partitions(blocks, Direction::Down, kernels, partitions);
+    }
+
+    fn down_in_partitions(
+        &mut self,
+        blocks: &mut [Block],
+        direction: Direction,
+        kernels: &Kernels,
+        partitions: usize,
+    ) {
+        if partitions == 1 {
+            self.solve_down(blocks, direction, kernels);
+        } else if let Some(springs) = self.bands.of(direction) {
+            let strip = self.layout.strip as usize;
+            let all = self.scratch.split(direction, (strip, partitions), blocks);
+            in_partitions(all, |mut partition| solve(&mut partition, springs, kernels));
+        }
+    }
+
+    /// Ends a sub-step in this many partitions. Behind the grid's blocks there may be others.
+    pub(crate) fn end(
+        &self,
+        blocks: &mut [Block],
+        motion: &Motion,
+        partitions: usize,
+    ) -> SolvedSubstep {
+        if partitions > 1 {
+            return self.end_in_partitions(blocks, motion, partitions);
+        }
         let kernels = motion.kernels;
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
         let given = self.given_if(motion.measures, kernels);
         let stretch = motion.measures.then(|| Stretch {
-            material: self.material(&given),
+            material: self.bands.material(&given),
             ..self.measure(blocks, kernels)
         });
         SolvedSubstep {
@@ -273,7 +215,6 @@ impl GridSolver {
         }
     }
 
-    /// Ends a sub-step in this many partitions.
     fn end_in_partitions(
         &self,
         blocks: &mut [Block],
@@ -290,7 +231,10 @@ impl GridSolver {
             .take(partitions)
             .enumerate()
             .map(|(partition, found)| {
-                let size = (border(partition + 1) - border(partition)) * strip;
+                let size = match partition + 1 == partitions {
+                    true => rest.len(),
+                    false => (border(partition + 1) - border(partition)) * strip,
+                };
                 (border(partition) * strip, take(&mut rest, size), found)
             });
         in_partitions(parts, |(first, blocks, found)| {
@@ -303,15 +247,15 @@ impl GridSolver {
             let blocks = &*blocks;
             in_partitions((0..partitions).zip(&mut found), |(partition, found)| {
                 let rows = border(partition)..border(partition + 1);
-                found.longest = self.measure_rows(blocks, rows, kernels);
+                found.longest = self.bands.measure_rows(blocks, self.layout, rows, kernels);
             });
             let mut longest = Longest::default();
             for found in &found[..partitions] {
                 longest.merge(&found.longest);
             }
             Stretch {
-                material: self.material(&given),
-                ..self.stretch(&longest)
+                material: self.bands.material(&given),
+                ..self.bands.stretch(&longest)
             }
         });
         SolvedSubstep {
@@ -324,7 +268,8 @@ impl GridSolver {
     /// The elongations of elastic springs across and down (m), if they are measured.
     fn given_if(&self, measures: bool, kernels: &Kernels) -> [Lanes; 2] {
         if measures {
-            self.second_pass.given(&self.across, &self.down, kernels)
+            self.second_pass
+                .given(&self.bands.across, &self.bands.down, kernels)
         } else {
             [[0.0; LANES]; 2]
         }
@@ -353,7 +298,7 @@ impl GridSolver {
                 pulled: take(&mut pulled, if is_elastic { size } else { 0 }),
             }
         });
-        let springs = &self.across;
+        let springs = &self.bands.across;
         in_partitions(parts, |mut part| solve_rows(&mut part, springs, kernels));
     }
 }
@@ -362,14 +307,7 @@ impl SpringSolver for GridSolver {
     fn set_step_scale(&mut self, step_scale: StepScale) {
         if self.step_scale != step_scale {
             self.step_scale = step_scale;
-            for springs in self
-                .across
-                .iter_mut()
-                .chain([&mut self.down])
-                .chain(self.diagonals.iter_mut().flatten())
-            {
-                springs.soften(step_scale);
-            }
+            self.bands.soften(step_scale);
         }
     }
 
@@ -390,23 +328,16 @@ impl SpringSolver for GridSolver {
         partitions: usize,
     ) -> SolvedSubstep {
         let partitions = self.partitions(partitions);
-        let kernels = motion.kernels;
-        if partitions > 1 {
-            self.solve_in_partitions(blocks, kernels, partitions);
-            self.solve_again(blocks, motion, partitions);
-            return self.end_in_partitions(blocks, motion, partitions);
-        }
-        self.solve_down(blocks, Direction::Right, kernels);
-        self.solve_down(blocks, Direction::Left, kernels);
-        self.solve_across(blocks, kernels);
-        self.solve_down(blocks, Direction::Down, kernels);
-        self.solve_again(blocks, motion, 1);
-        self.end(blocks, motion)
+        self.solve_diagonals(blocks, motion.kernels, partitions);
+        self.solve_along(blocks, motion.kernels, partitions);
+        self.solve_again(blocks, motion, partitions);
+        self.end(blocks, motion, partitions)
     }
 
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {
         let rows = 0..self.layout.rows as usize;
-        self.stretch(&self.measure_rows(blocks, rows, kernels))
+        self.bands
+            .stretch(&self.bands.measure_rows(blocks, self.layout, rows, kernels))
     }
 
     fn boxed(&self) -> Box<dyn SpringSolver> {

@@ -2,6 +2,7 @@
 //!
 //! The docs of the module [`solver`](crate::solver) describe the method, its cost and its limits.
 
+mod bands;
 mod bundles;
 mod grid;
 mod second_pass;

@@ -295,7 +295,8 @@ fn torn_and_mapped_families_are_solved_as_by_elimination_in_f64() {
     }
 }
 
-/// All springs of a grid in a list are solved to the same bits as the grid's, in the second pass too, and measured alike.
+/// All springs of a grid in a list are solved to the same bits as the grid's, in the second pass too, and measured alike. Their tension is
+/// known one by one; a grid takes that of its borders, which are half as stiff, for twice as much. So its ω may be √2 times as much.
 #[test]
 fn a_grid_in_a_list_has_the_same_bits() {
     for (columns, rows) in [(9, 17), (16, 16), (33, 20), (70, 11)] {
@@ -323,9 +324,15 @@ fn a_grid_in_a_list_has_the_same_bits() {
                 let mut particles = start.clone();
                 let solved = solver.substep(particles.blocks_mut(), &motion, 1);
                 let places: Vec<Vec3> = particles.positions().collect();
-                (places, solved.stretch, solved.ripple, solved.moved)
+                ((places, solved.stretch, solved.moved), solved.ripple)
             });
-            assert!(whole == listed, "{columns} × {rows}, {compliance}");
+            assert!(whole.0 == listed.0, "{columns} × {rows}, {compliance}");
+            let (whole, listed) = (whole.1, listed.1);
+            let is_like = listed <= 1.01 * whole && listed >= 0.7 * whole;
+            assert!(
+                is_like,
+                "{columns} × {rows}, {compliance}: {whole} {listed}"
+            );
         }
     }
 }

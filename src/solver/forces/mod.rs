@@ -211,10 +211,10 @@ impl Forces {
         let blocks = particles.blocks_mut();
         // Before the kick, which keeps a part of it.
         self.list.push(blocks, weight / kept);
-        if let Some((bending, times)) = bending
-            && times > 0.0
+        if let Some((bending, bends_for)) = bending
+            && bends_for > 0.0
         {
-            bending.push(blocks, times * dt * dt / kept, kernels);
+            bending.push(blocks, bends_for * dt * dt / kept, kernels);
         }
         if let Some(linearized) = linearized {
             (kernels.air_push)(blocks, linearized, weight / kept, 1.0 / dt);

@@ -75,7 +75,7 @@ impl Elastic {
         })
     }
 
-    /// The stiffness of those that begin in a row of so many blocks (N/m).
+    /// The values of stiffness (N/m) along a row, whose number of blocks is `strip`.
     #[inline(always)]
     pub fn of_row(&self, row: usize, strip: usize) -> &[Lanes] {
         &self.stiffness[row * self.stride..][..strip]

@@ -4,6 +4,7 @@ use super::Solver;
 use crate::{
     cloth::ClothParticles,
     solver::{
+        bending::Bending,
         step::{TickStep, TimeOrder},
         substepping::{MAX_SUBSTEPS, Substepping},
     },
@@ -20,7 +21,7 @@ const MAX_DAMPING: f32 = 0.5;
 
 impl Solver {
     /// The longest sub-step (s) in which the springs act by explicit forces, in a motion of second order. 0 if they
-    /// never do: on a mesh, with tethers, with damping along springs, or if a spring is rigid.
+    /// never do: on a mesh that was no grid, with tethers, with damping along springs, or if a spring is rigid.
     pub fn longest_explicit_substep(&self, particles: &ClothParticles) -> f32 {
         let blocks = particles.blocks();
         match &self.forces {
@@ -62,7 +63,13 @@ impl Solver {
         order: TimeOrder,
     ) -> u32 {
         let needed = Substepping::needed(along, seconds);
-        let most = CHEAPER * needed;
+        // The bending of a torn or mapped grid costs as much with forces.
+        let bends_as_mesh = (self.bending.as_ref()).is_some_and(Bending::is_of_mesh);
+        let most = if bends_as_mesh {
+            needed
+        } else {
+            CHEAPER * needed
+        };
         if order == TimeOrder::First || !self.may_be_explicit(particles, seconds / most as f32) {
             return needed;
         }

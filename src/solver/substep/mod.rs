@@ -82,6 +82,14 @@ impl Solver {
     }
 
     fn of_layout(springs: &Springs, layout: Layout) -> Self {
+        // Particles that a caller made lie in one row.
+        let on_grid = match springs.storage() {
+            SpringStorage::List(list) => list
+                .grid
+                .as_ref()
+                .filter(|grid| layout == Layout::of_torn_grid(grid.columns(), layout.len() as u32)),
+            SpringStorage::Grid(..) => None,
+        };
         let spring_solver: Box<dyn SpringSolver> = match springs.storage() {
             SpringStorage::Grid(grid, compliances) => {
                 let of_grid = Layout::new(grid.columns(), grid.rows());
@@ -92,7 +100,7 @@ impl Solver {
                 let mut ends = list.springs.iter().flat_map(|spring| spring.ends);
                 let exists = |end: u32| (end as usize) < layout.len();
                 assert!(ends.all(exists), "springs between particles that exist");
-                match &list.grid {
+                match on_grid {
                     Some(grid) => Box::new(TornGridSolver::new(grid, list)),
                     None => Box::new(ListSolver::new(list, layout)),
                 }
@@ -100,7 +108,7 @@ impl Solver {
         };
         let forces = match springs.storage() {
             SpringStorage::Grid(grid, compliances) => Forces::new(grid, compliances).map(Box::new),
-            SpringStorage::List(list) => (list.grid.as_ref())
+            SpringStorage::List(list) => on_grid
                 .and_then(|grid| Forces::of_list(grid, layout, list))
                 .map(Box::new),
         };

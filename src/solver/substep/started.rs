@@ -99,18 +99,6 @@ impl Solver {
         if let Some(air) = &mut self.air {
             air.begin(step.seconds, tick.substeps());
         }
-        tick.is_explicit = self.is_explicit(particles, &step);
-        if tick.is_explicit {
-            particles.set_substep(dt);
-            particles.end_past();
-            particles.zero_pin_displacements();
-            if let Some(bending) = &self.bending
-                && !step.has_layers
-            {
-                tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
-            }
-            return tick;
-        }
         // Jolts keep cloth that touches something awake, and two layers may pass each other by one.
         if let Some(bending) = &self.bending
             && step.order == TimeOrder::Second
@@ -118,6 +106,13 @@ impl Solver {
             && !particles.past_mut().is_ignored()
         {
             tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
+        }
+        tick.is_explicit = self.is_explicit(particles, &step);
+        if tick.is_explicit {
+            particles.set_substep(dt);
+            particles.end_past();
+            particles.zero_pin_displacements();
+            return tick;
         }
         // The work of a wind is no excess, and not known here.
         if self.air.is_none() {
@@ -296,8 +291,8 @@ impl Solver {
             tick.damping_reference.blow(air.memory().force);
         }
         let forces = self.forces.as_mut().expect("forces");
-        let times = tick.bending.times(tick.next, tick.substeps());
-        let bending = self.bending.as_mut().map(|bending| (bending, times));
+        let bends_for = tick.bending.for_kick(tick.next, tick.substeps());
+        let bending = self.bending.as_mut().map(|bending| (bending, bends_for));
         let linearized = self.air.as_ref().map(|air| air.linearized());
         let damping_reference = &mut tick.damping_reference;
         let substep = forces.substep(

@@ -41,8 +41,8 @@ const FOR_EACH_PARTICLE: f32 = 1.0 / 3.0;
 /// 4 % (`cargo test --test headless heavy`).
 const FOR_LOAD: f32 = 12.0;
 
-/// With a sub-step of this many seconds, strips of irregular meshes tear at 95 to 105 % of their strength; with five times as long
-/// a one at 85 % (`BEVY_DRAPE_LONG=1 cargo test --test headless its_strength`).
+/// With a sub-step of this many seconds, strips of irregular meshes tear at 95 to 106 % of their strength. With one that is five times
+/// as long, some tear at 85 % (`BEVY_DRAPE_LONG=1 cargo test --test headless its_strength`).
 const STRESS_SUBSTEP: f32 = 1.0 / 1280.0;
 
 /// The number of sub-steps in a tick. Cost grows in proportion to the sub-steps, and the error of the motion falls with

@@ -24,7 +24,7 @@ use self::{
 };
 use crate::support::*;
 
-/// Runs, and ticks of each: by default, and where tests run at their full length.
+/// Runs, and ticks of each: by default, when they are to take seconds, and where tests run at their full length.
 const RUNS: [u64; 2] = [2, 30];
 const TICKS: [usize; 2] = [100, 400];
 

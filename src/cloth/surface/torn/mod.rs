@@ -11,8 +11,8 @@
 //!   o───o───o          o───o───o
 //! ```
 //!
-//! Where cloth meets cloth, they are moved apart by a fiftieth of the way to their faces' middles: so layers know which side each
-//! is on.
+//! At rest they are apart by a fiftieth of the way to their faces' middles. Where the cloth collides with itself, they are moved apart
+//! by as much: so layers know which side each is on.
 //!
 //! Particles keep their indices, and new ones follow in the order in which edges were torn. So whoever knows a particle by
 //! its index knows it after the next tear, too. A particle's mass and area are shared out by its faces, and nothing is lost.

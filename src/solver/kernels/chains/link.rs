@@ -148,7 +148,7 @@ impl SpringBand {
         row * self.stride
     }
 
-    /// `hold` of the springs that begin in a row of so many blocks.
+    /// The values of `hold` along a row, whose number of blocks is `strip`.
     #[inline(always)]
     pub fn holds_of(&self, row: usize, strip: usize) -> &[Lanes] {
         &self.hold[self.first_of(row)..][..strip]
