@@ -136,6 +136,19 @@ fn solve_chain(
     }
 }
 
+/// Solves all chains of one direction.
+fn solve_family(of: &mut GridSolver, step: (u32, i32), particles: &mut ClothParticles) {
+    of.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
+    let kernels = SimdLevel::Auto.kernels();
+    let blocks = particles.blocks_mut();
+    match step {
+        (0, 1) => of.solve_across(blocks, &kernels),
+        (1, 0) => of.solve_down(blocks, Direction::Down, &kernels),
+        (1, 1) => of.solve_down(blocks, Direction::Right, &kernels),
+        _ => of.solve_down(blocks, Direction::Left, &kernels),
+    }
+}
+
 /// In grids that fill their lanes and that do not, with pins in chains, crumpled a little and a lot, rigid and soft.
 #[test]
 fn each_family_is_solved_as_by_elimination_in_f64() {
@@ -158,16 +171,8 @@ fn each_family_is_solved_as_by_elimination_in_f64() {
             };
             for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
                 let mut spring_solver = GridSolver::new(&grid, &compliances);
-                spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
                 let mut particles = start.clone();
-                let kernels = SimdLevel::Auto.kernels();
-                let blocks = particles.blocks_mut();
-                match step {
-                    (0, 1) => spring_solver.solve_across(blocks, &kernels),
-                    (1, 0) => spring_solver.solve_down(blocks, Direction::Down, &kernels),
-                    (1, 1) => spring_solver.solve_down(blocks, Direction::Right, &kernels),
-                    _ => spring_solver.solve_down(blocks, Direction::Left, &kernels),
-                }
+                solve_family(&mut spring_solver, step, &mut particles);
                 let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
                 for chain in chains(&grid, step) {
                     let soft = |cell| {
@@ -260,16 +265,8 @@ fn torn_and_mapped_families_are_solved_as_by_elimination_in_f64() {
             };
             for step in [(0, 1), (1, 0), (1, 1), (1, -1)] {
                 let mut spring_solver = GridSolver::of_list(&grid, &list);
-                spring_solver.set_step_scale(StepScale::new(WEIGHT_DT2, 1.0, 0.0));
                 let mut particles = start.clone();
-                let kernels = SimdLevel::Auto.kernels();
-                let blocks = particles.blocks_mut();
-                match step {
-                    (0, 1) => spring_solver.solve_across(blocks, &kernels),
-                    (1, 0) => spring_solver.solve_down(blocks, Direction::Down, &kernels),
-                    (1, 1) => spring_solver.solve_down(blocks, Direction::Right, &kernels),
-                    _ => spring_solver.solve_down(blocks, Direction::Left, &kernels),
-                }
+                solve_family(&mut spring_solver, step, &mut particles);
                 let mut moved: Vec<DVec3> = start.displacements().map(Vec3::as_dvec3).collect();
                 let rest = f64::from(grid.step_length(step));
                 for chain in chains(&grid, step) {
