@@ -74,26 +74,18 @@ impl SpringSolver for TornGridSolver {
         self.list.store_to(&self.slots, blocks);
         (self.grid).solve_again(&mut blocks[..count], motion, partitions);
         let mut solved = self.grid.end(blocks, motion, partitions);
-        if let Some(stretch) = &mut solved.stretch {
-            let of_list = self.stretch_of_list(blocks);
+        if let Some(of_grid) = solved.stretch {
             let [material, _] = self.list.tensions();
-            stretch.structural = stretch.structural.max(of_list.structural);
-            stretch.bound = stretch.bound.max(of_list.bound);
-            stretch.material = stretch.material.max(material);
+            solved.stretch = Some(Stretch {
+                material: of_grid.material.max(material),
+                ..self.with_list(of_grid, blocks)
+            });
         }
         solved
     }
 
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {
-        let (of_grid, of_list) = (
-            self.grid.measure(blocks, kernels),
-            self.stretch_of_list(blocks),
-        );
-        Stretch {
-            structural: of_grid.structural.max(of_list.structural),
-            bound: of_grid.bound.max(of_list.bound),
-            ..of_grid
-        }
+        self.with_list(self.grid.measure(blocks, kernels), blocks)
     }
 
     fn boxed(&self) -> Box<dyn SpringSolver> {
@@ -102,7 +94,8 @@ impl SpringSolver for TornGridSolver {
 }
 
 impl TornGridSolver {
-    fn stretch_of_list(&self, blocks: &[Block]) -> Stretch {
+    /// The stretch of the grid's springs and of those in the list together.
+    fn with_list(&self, of_grid: Stretch, blocks: &[Block]) -> Stretch {
         let place = |end: u32| {
             let slot = self.slots[end as usize];
             blocks[slot.block].position(slot.lane)
@@ -111,6 +104,11 @@ impl TornGridSolver {
             let [a, b] = spring.ends;
             place(a).distance_squared(place(b))
         };
-        self.list.stretch(square)
+        let of_list = self.list.stretch(square);
+        Stretch {
+            structural: of_grid.structural.max(of_list.structural),
+            bound: of_grid.bound.max(of_list.bound),
+            ..of_grid
+        }
     }
 }

@@ -66,8 +66,8 @@ impl GridBands {
 
     /// Whether those of a row or column give.
     pub fn is_elastic(&self) -> bool {
-        let along = self.across.iter().chain([&self.down]);
-        along.into_iter().any(SpringBand::is_elastic)
+        let mut along = self.across.iter().chain([&self.down]);
+        along.any(SpringBand::is_elastic)
     }
 
     /// Whether each row has springs of its own.
