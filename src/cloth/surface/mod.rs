@@ -28,6 +28,7 @@ mod torn;
 mod triangles;
 mod triangulation;
 mod weld;
+mod widths;
 mod woven;
 
 use std::{
@@ -104,6 +105,7 @@ struct Derived {
     graph: OnceLock<Graph>,
     chains: OnceLock<Chains>,
     flat: OnceLock<Option<Flat>>,
+    face_widths: OnceLock<Vec<f32>>,
     incidence: OnceLock<Incidence>,
     along_warp: OnceLock<Vec<f32>>,
     bending: OnceLock<Triangulation>,

@@ -45,10 +45,13 @@ pub(crate) struct ContactBlock {
     /// Blocks of the same collider with the other corners of a grid's cells: to the right, below, and below to the
     /// right.
     pub around: [u32; 3],
+    /// Bit mask of the lanes that are pushed as particles; the others may be pushed by triangles.
+    pub points: u8,
     /// Bit mask of the lanes that are tested one by one in this sub-step.
     pub left: u8,
-    /// Until everything has moved this far, no lane can touch (m).
+    /// Until everything has moved this far, no particle can touch, and no triangle that one of them owns (m).
     pub clear_until: f32,
+    pub faces_clear_until: f32,
     /// Largest displacement of its particles since the search (m), where that is measured; else 0.
     pub moved: f32,
     /// Each particle's share of the cloth's area (m²).
@@ -65,8 +68,10 @@ impl ContactBlock {
             block,
             lanes: 0,
             around: [NONE; 3],
+            points: u8::MAX,
             left: 0,
             clear_until: f32::NEG_INFINITY,
+            faces_clear_until: f32::NEG_INFINITY,
             moved: 0.0,
             area: [0.0; LANES],
             grip: [1.0; LANES],
@@ -78,6 +83,15 @@ impl ContactBlock {
     pub fn has_cells(&self) -> bool {
         self.around[2] != NONE
     }
+}
+
+/// Which triangles of its particles a collider is tested against.
+pub(crate) struct TestedFaces<F> {
+    /// Whether a triangle is excluded.
+    pub is_left_out: F,
+    /// Up to this width (m), triangles are left to their particles; beside the others, no particle is pushed. `None` if all
+    /// particles are.
+    pub widest_left: Option<f32>,
 }
 
 /// Everything that colliders may touch in the tick.
@@ -108,33 +122,39 @@ impl Candidates {
         for contact in &mut self.blocks {
             contact.depth = [f32::NEG_INFINITY; LANES];
             contact.clear_until = f32::NEG_INFINITY;
+            contact.faces_clear_until = f32::NEG_INFINITY;
         }
         self.budgets.fill(FrictionBudget::NONE);
     }
 
-    /// Adds the candidates of a collider, in any order. With `is_left_out`, adds the triangles that they own, too; it
-    /// returns whether a triangle is excluded. Returns the ranges of the candidates and their blocks, both in the order
-    /// of the cloth. So the result does not depend on the search method.
+    /// Adds the candidates of a collider, in any order, and the tested triangles that they own, if any. Returns the ranges of the
+    /// candidates and their blocks, both in the order of the cloth. So the result does not depend on the search method.
     pub fn add(
         &mut self,
         found: &[u32],
         surface: &Surface,
         layout: Layout,
-        is_left_out: Option<&impl Fn(&[u32; 3]) -> bool>,
+        faces: Option<&TestedFaces<impl Fn(&[u32; 3]) -> bool>>,
     ) -> Ranges {
         let first = [self.all.len(), self.blocks.len(), self.budgets.len()];
         self.sort(found, surface.len());
         self.marks.resize(layout.blocks(), 0);
+        let widest_left = faces.and_then(|faces| faces.widest_left);
+        let is_left = |particle: u32| {
+            let widest = widest_left.filter(|widest| *widest > 0.0);
+            widest.is_some_and(|widest| surface.face_widths()[particle as usize] <= widest)
+        };
         for index in first[0]..self.all.len() {
             let particle = self.all[index].particle;
             let Slot { block, lane } = layout.slot_of(particle as usize);
             self.all[index].place = (block * LANES + lane) as u32;
             self.mark(block, first[1]);
-            let Some(is_left_out) = is_left_out else {
+            let Some(faces) = faces else {
                 continue;
             };
+            let mut owned = surface.faces().of(particle).iter();
             // A triangle that is left out takes the particle's others with it.
-            if !surface.faces().of(particle).iter().any(is_left_out) {
+            if !is_left(particle) && !owned.any(&faces.is_left_out) {
                 let fan = surface.fans().of(particle);
                 self.all[index].has_faces = !fan.faces.is_empty();
                 for corner in fan.corners {
@@ -143,8 +163,11 @@ impl Candidates {
             }
         }
         self.blocks[first[1]..].sort_unstable_by_key(|contact| contact.block);
-        for (index, contact) in self.blocks.iter().enumerate().skip(first[1]) {
+        for (index, contact) in self.blocks.iter_mut().enumerate().skip(first[1]) {
             self.marks[contact.block as usize] = index as u32;
+            if widest_left.is_some() {
+                contact.points = 0;
+            }
         }
         for candidate in &mut self.all[first[0]..] {
             let (block, lane) = candidate.lane();
@@ -152,6 +175,9 @@ impl Candidates {
             candidate.place = (index * LANES + lane) as u32;
             let contact = &mut self.blocks[index];
             contact.lanes |= 1 << lane;
+            if is_left(candidate.particle) {
+                contact.points |= 1 << lane;
+            }
             contact.area[lane] = surface.area_of(candidate.particle as usize);
             if layout.has_cells && candidate.has_faces {
                 let strip = layout.strip as usize;
@@ -165,7 +191,7 @@ impl Candidates {
                 contact.around = around.map_inline(|block| self.marks[block] - first[1] as u32);
             }
         }
-        if is_left_out.is_some() {
+        if faces.is_some() {
             let count = self.blocks.len() - first[1];
             self.budgets.resize(first[2] + count, FrictionBudget::NONE);
         }
@@ -173,6 +199,8 @@ impl Candidates {
             candidates: first[0]..self.all.len(),
             blocks: first[1]..self.blocks.len(),
             budgets: first[2]..self.budgets.len(),
+            has_points: widest_left.is_some()
+                && self.blocks[first[1]..].iter().any(|of| of.points != 0),
         }
     }
 
@@ -220,6 +248,8 @@ pub(crate) struct Ranges {
     pub candidates: Range<usize>,
     pub blocks: Range<usize>,
     pub budgets: Range<usize>,
+    /// Whether particles are pushed beside triangles.
+    pub has_points: bool,
 }
 
 #[cfg(test)]
@@ -248,7 +278,11 @@ mod tests {
                     let found: Vec<u32> = (0..most).map(|_| random.below(count as u32)).collect();
                     let left_out = random.below(count as u32);
                     let is_left_out = |corners: &[u32; 3]| corners.contains(&left_out);
-                    let by_triangles = (tick % 2 == 0).then_some(&is_left_out);
+                    let faces = TestedFaces {
+                        is_left_out,
+                        widest_left: None,
+                    };
+                    let by_triangles = (tick % 2 == 0).then_some(&faces);
                     let ranges = candidates.add(&found, &surface, layout, by_triangles);
                     let all = &candidates.all[ranges.candidates.clone()];
                     let mut expected = found.clone();

@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::contact::colliders::MovingCollider;
+use crate::{cloth::Surface, contact::colliders::MovingCollider};
 
 /// Colliders with a radius of at least this many spacings are tested against particles, smaller ones against triangles.
 ///
@@ -33,7 +33,8 @@ const EDGES_FROM: f32 = 2.0;
 pub enum NarrowPhase {
     /// Triangles for three kinds of colliders, particles otherwise. These are balls and capsules with a radius below
     /// [`PARTICLES_FROM`] spacings, those that move farther than their width in the tick, and shapes with edges. Shapes
-    /// with edges use particles if the cloth's spacing is at most two radii of its particles.
+    /// with edges use particles if the cloth's spacing is at most two radii of its particles. On a mesh, each triangle counts by
+    /// its own size: as the spacing of a square grid whose triangles have as large a circle around them.
     #[default]
     Auto,
     /// Particles: exact while the collider is large compared with the spacing.
@@ -50,10 +51,22 @@ impl NarrowPhase {
         ("triangles", Self::Triangles),
     ];
 
-    /// The narrow phase of a collider, on a cloth with a spacing and a particle radius (m).
-    pub(crate) fn of(self, collider: &MovingCollider, spacing: f32, particle_radius: f32) -> Self {
+    /// The narrow phase of a collider, on a cloth with a particle radius (m). `Auto` where it
+    /// [depends on the triangle](Self::widest_left_to_particles).
+    pub(crate) fn of(
+        self,
+        collider: &MovingCollider,
+        surface: &Surface,
+        particle_radius: f32,
+    ) -> Self {
+        let spacing = surface.spacing().longest;
         if !collider.shape.has_edges() {
-            return self.chosen(collider.shape.radius(), collider.travel(), spacing);
+            let chosen = |spacing| self.chosen(collider.shape.radius(), collider.travel(), spacing);
+            let is_uniform = surface.as_grid().is_some() || chosen(0.0) == Self::Triangles;
+            return match chosen(spacing) {
+                Self::Triangles if !is_uniform => Self::Auto,
+                chosen => chosen,
+            };
         }
         let is_seen = spacing > EDGES_FROM * particle_radius;
         match self {
@@ -61,6 +74,11 @@ impl NarrowPhase {
             Self::Auto if is_seen => Self::Triangles,
             Self::Auto | Self::Particles => Self::Particles,
         }
+    }
+
+    /// The width of triangles (m) up to which their particles are enough for a ball or capsule of this radius (m).
+    pub(crate) fn widest_left_to_particles(radius: f32) -> f32 {
+        radius / PARTICLES_FROM
     }
 
     /// The narrow phase of a collider of `radius` (m), if it has one, that moves by `travel` in the tick (m), on a

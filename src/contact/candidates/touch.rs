@@ -27,7 +27,7 @@ pub struct Touch {
     pub id: usize,
     /// Its shape and motion.
     pub collider: MovingCollider,
-    /// Its narrow phase: never `Auto`.
+    /// Its narrow phase, never `Auto`: `Triangles` if it is tested against any.
     pub narrow_phase: NarrowPhase,
     /// The largest depth (m), 0 if nothing was inside.
     pub deepest: f32,

@@ -17,7 +17,9 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
     bodies::{Before, Body, BodyChange, Carriers, Supports},
-    candidates::{Candidates, ContactPoint, ContactSettings, NarrowPhase, SavedCandidates, Touch},
+    candidates::{
+        Candidates, ContactPoint, ContactSettings, NarrowPhase, SavedCandidates, TestedFaces, Touch,
+    },
     colliders::{ColliderShape, MovingCollider},
     edges::ShapeCache,
 };
@@ -113,13 +115,12 @@ impl Detection {
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
-        let spacing = surface.spacing().longest;
         let narrow_phase = settings
             .narrow_phase
-            .of(collider, spacing, settings.particle_radius);
+            .of(collider, surface, settings.particle_radius);
         let cover = match narrow_phase {
-            NarrowPhase::Triangles => longest_edge,
-            NarrowPhase::Auto | NarrowPhase::Particles => 0.0,
+            NarrowPhase::Triangles | NarrowPhase::Auto => longest_edge,
+            NarrowPhase::Particles => 0.0,
         };
         // Rounding of a position in each sub-step may add this to its displacement.
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
@@ -204,9 +205,16 @@ impl Detection {
             return;
         }
         let is_embedded = self.is_embedded(id);
+        let widest_left = match (narrow_phase, collider.shape.radius()) {
+            (NarrowPhase::Auto, Some(radius)) => NarrowPhase::widest_left_to_particles(radius),
+            _ => 0.0,
+        };
+        let is_wide = |of: &u32| self.surface.face_widths()[*of as usize] > widest_left;
         let narrow_phase = match narrow_phase {
             // The triangles of what is inside would be pushed the nearest way.
-            NarrowPhase::Triangles if is_embedded => NarrowPhase::Particles,
+            _ if is_embedded => NarrowPhase::Particles,
+            NarrowPhase::Auto if found.iter().any(is_wide) => NarrowPhase::Triangles,
+            NarrowPhase::Auto => NarrowPhase::Particles,
             other => other,
         };
         if self.bodies.iter().all(|body| body.id != id) {
@@ -224,11 +232,15 @@ impl Detection {
         let may_be_sewn = !is_by_cells && particles.has_pinned();
         let is_left_out = |face: &[u32; 3]| may_be_sewn && is_sewn(face);
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
-        let triangles = by_triangles.then_some(&is_left_out);
-        let of = self.candidates.add(found, &self.surface, layout, triangles);
+        let faces = TestedFaces {
+            is_left_out,
+            widest_left: collider.shape.radius().map(|_| widest_left),
+        };
+        let faces = by_triangles.then_some(&faces);
+        let of = self.candidates.add(found, &self.surface, layout, faces);
         (self.embedding).note_places(id, &self.candidates.all[of.candidates.clone()]);
         match self.touches.binary_search_by_key(&id, |touch| touch.id) {
-            Ok(at) => self.touches[at].of = of,
+            Ok(at) => (self.touches[at].of, self.touches[at].narrow_phase) = (of, narrow_phase),
             Err(at) => self.touches.insert(
                 at,
                 Touch {

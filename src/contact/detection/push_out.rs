@@ -131,12 +131,12 @@ impl Detection {
         // The guard measures the cloth.
         let odometer = if is_guarded { 0.0 } else { margin.odometer() } + touch.travelled;
         let motion = collider.in_substep(substep);
-        let shares = match touch.narrow_phase {
-            NarrowPhase::Triangles if !has_edges => TRIANGLES_A_PUSH,
-            _ => 1.0,
+        let seconds = particles.substep();
+        let lanes_of = |shares: f32| {
+            let push_out = PushOut::new(seconds, motion.travel(), shares);
+            lane_motion(&motion, settings, push_out, odometer)
         };
-        let push_out = PushOut::new(particles.substep(), motion.travel(), shares);
-        let lanes = lane_motion(&motion, settings, push_out, odometer);
+        let lanes = lanes_of(1.0);
         self.embedding.hide(touch.id, particles);
         let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
@@ -162,6 +162,12 @@ impl Detection {
                 (push_shape(particles, &mut pushing, known, edges), None)
             }
             NarrowPhase::Triangles => {
+                let points = if touch.of.has_points {
+                    let of = (&motion, settings);
+                    push_particles(particles, contacts, (&mut [], 0), of, &lanes)
+                } else {
+                    ContactResult::default()
+                };
                 let is_measured = touch.area == 0.0
                     || (substep.index + 1).is_multiple_of(MEASURED_EACH)
                     || substep.index + 1 == substep.count;
@@ -174,8 +180,8 @@ impl Detection {
                     is_measured,
                 );
                 let core = CoreMotion::new(motion, settings);
-                let stopped = pushed.push(particles, (&core, &lanes), from);
-                (pushed.found, stopped)
+                let stopped = pushed.push(particles, (&core, &lanes_of(TRIANGLES_A_PUSH)), from);
+                (pushed.found.and(&points), stopped)
             }
             NarrowPhase::Auto | NarrowPhase::Particles => {
                 let of = (&motion, settings);

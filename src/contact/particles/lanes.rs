@@ -92,7 +92,7 @@ impl Sums {
 /// Whether no lane of a block can touch yet. False for NaN.
 #[inline(always)]
 pub(crate) fn is_clear(contact: &ContactBlock, motion: &LaneMotion) -> bool {
-    motion.odometer + contact.moved < contact.clear_until
+    contact.points == 0 || motion.odometer + contact.moved < contact.clear_until
 }
 
 /// Stores the depth and the clearance of a block, and returns whether to push its particles. Only surfaces that may deform
@@ -108,7 +108,7 @@ pub(crate) fn survey<const DEFORMS: bool>(
     let (mut deepest, mut size) = ([0.0_f32; LANES], [0.0_f32; LANES]);
     let mut is_unusual = [0_u32; LANES];
     for l in 0..LANES {
-        let is_free = view[W + l] > 0.0;
+        let is_free = (view[W + l] > 0.0) & (contact.points & (1 << l) != 0);
         let depth = near.depth[l];
         let swing = if DEFORMS { near.swing[l] } else { 0.0 };
         let slow = motion.most - (motion.swing + swing);

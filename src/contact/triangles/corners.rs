@@ -97,19 +97,25 @@ impl<'a> CoreMotion<'a> {
             edge = edge.max(block.position(lane).distance_squared(first));
             speed = speed.max(block.displacement(lane).distance_squared(self.of.slide));
         }
+        let clear = self.clearance_of(first, edge.sqrt());
+        [clear, speed.sqrt() + self.of.swing]
+    }
+
+    /// The smallest distance from a touch of what is within `extent` of a point (m).
+    #[inline]
+    fn clearance_of(&self, point: Vec3, extent: f32) -> f32 {
         let [start, end] = self.at_end;
         let along = end - start;
-        let part = ((first - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+        let part = ((point - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
         let nearest = if part > 0.0 {
             start + along * part
         } else {
             start
         };
         // Larger by rounding errors and by the tolerance of a touch.
-        let near = (1.0 + 4.0e-3) * self.reach + edge.sqrt();
-        let rounding = 1.0e-5 * (near + first.length());
-        let clear = first.distance(nearest) - near - rounding;
-        [clear, speed.sqrt() + self.of.swing]
+        let near = (1.0 + 4.0e-3) * self.reach + extent;
+        let rounding = 1.0e-5 * (near + point.length());
+        point.distance(nearest) - near - rounding
     }
 
     /// The contact of a triangle at the end of the sub-step or at its first hit, and its penetration along the normal
@@ -134,6 +140,13 @@ impl<'a> CoreMotion<'a> {
             )
         };
         let speed = self.of.speed(corners.displacements);
+        let [a, b, c] = corners.positions;
+        let middle = (a + b + c) / 3.0;
+        let extent = (a.distance_squared(middle).max(b.distance_squared(middle)))
+            .max(c.distance_squared(middle));
+        if self.clearance_of(middle, extent.sqrt()) > speed {
+            return None;
+        }
         let nearest_at_end = nearest(corners.positions, self.at_end);
         // Most candidates are too far away for a hit.
         let distance = nearest_at_end.offset.length();

@@ -219,7 +219,7 @@ pub(crate) fn push_cells_baseline(
     for (index, contact) in contacts.iter_mut().enumerate().skip(first) {
         let block = contact.block;
         let pushed = cells.pushed + sums.passed * cells.max_faces;
-        if !contact.has_cells() || motion.odometer + pushed < contact.clear_until {
+        if !contact.has_cells() || motion.odometer + pushed < contact.faces_clear_until {
             continue;
         }
         let is_begun = from == Place { block, which: 1 };
@@ -236,7 +236,7 @@ pub(crate) fn push_cells_baseline(
             let both = (&mut *contact, corners);
             let (left, least) = push_eight(blocks, both, budgets, &is_cell, (motion, cells), sums);
             clear = clear.min(least);
-            contact.clear_until = f32::NEG_INFINITY;
+            contact.faces_clear_until = f32::NEG_INFINITY;
             let next = Place {
                 block: block + which,
                 which: 1 - which,
@@ -255,7 +255,7 @@ pub(crate) fn push_cells_baseline(
         }
         // Smaller by rounding errors and by the tolerance of a touch.
         let rounding = 1.0e-5 * (centre + cells.reach + clear + motion.odometer);
-        contact.clear_until = motion.odometer + (clear - 2.0 * motion.tolerance - rounding);
+        contact.faces_clear_until = motion.odometer + (clear - 2.0 * motion.tolerance - rounding);
     }
     (Stop::Done, Place::END)
 }

@@ -281,11 +281,11 @@ impl SearchQueryItem<'_, '_> {
             query.clear();
             query.search(tree, bounds, self.particles, &probe);
             let met = match narrow_phase {
-                NarrowPhase::Triangles => {
+                NarrowPhase::Triangles | NarrowPhase::Auto => {
                     let bare = collider.probe(0.0, contact_settings.particle_radius, root);
                     meets_triangles(surface, self.particles, query.candidates(), &bare)
                 }
-                NarrowPhase::Auto | NarrowPhase::Particles => !query.candidates().is_empty(),
+                NarrowPhase::Particles => !query.candidates().is_empty(),
             };
             if met {
                 return false;

@@ -132,10 +132,10 @@ impl<'a> TrianglePush<'a> {
         let push_out = lanes.push_out;
         for contact in self.contacts.iter_mut() {
             // False for NaN.
-            let is_clear = lanes.odometer < contact.clear_until;
+            let is_clear = lanes.odometer < contact.faces_clear_until;
             contact.left = if is_clear { 0 } else { u8::MAX };
             if !is_clear {
-                contact.clear_until = f32::INFINITY;
+                contact.faces_clear_until = f32::INFINITY;
             }
         }
         for candidate in self.candidates {
@@ -146,7 +146,7 @@ impl<'a> TrianglePush<'a> {
                 continue;
             }
             let now = lanes.odometer + self.pushed();
-            if self.contacts[contact].left == 0 && now < self.contacts[contact].clear_until {
+            if self.contacts[contact].left == 0 && now < self.contacts[contact].faces_clear_until {
                 continue;
             }
             let slot = Slot {
@@ -160,7 +160,7 @@ impl<'a> TrianglePush<'a> {
                 f32::NEG_INFINITY
             };
             let contact_block = &mut self.contacts[contact];
-            contact_block.clear_until = contact_block.clear_until.min(until);
+            contact_block.faces_clear_until = contact_block.faces_clear_until.min(until);
             if clear > speed {
                 continue;
             }
@@ -192,7 +192,7 @@ impl<'a> TrianglePush<'a> {
     /// Marks everything for another test.
     fn look_again(&mut self) {
         for contact in self.contacts.iter_mut() {
-            contact.clear_until = f32::NEG_INFINITY;
+            contact.faces_clear_until = f32::NEG_INFINITY;
         }
     }
 
