@@ -105,7 +105,7 @@ const ENTRIES: &[Entry] = &[
     },
     Entry {
         name: "sewing",
-        pictures: &[("sewing.png", "a tunic, sewn around a figure")],
+        pictures: &[("sewing.png", "a shirt, sewn around a figure")],
     },
     Entry {
         name: "ropes",

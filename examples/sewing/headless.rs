@@ -10,15 +10,16 @@ use serde::Serialize;
 /// The printed report.
 #[derive(Serialize, Resource, Default, Clone)]
 struct Own {
-    /// Largest gap of the side seams at last (m).
-    gap_m: f32,
-    /// The most that a panel was stretched once it was dressed (%).
+    /// Largest gap of the side seams, and of the seams between front and sleeves, at last (m).
+    sides_gap_m: f32,
+    sleeves_gap_m: f32,
+    /// The most that the front or the back was stretched once it was dressed (%).
     stretch_percent: f32,
     /// Height of the shoulder seams at last (m).
     shoulders_m: f32,
 }
 
-/// When the tunic has settled on the figure (s).
+/// When the shirt has settled on the figure (s).
 const SETTLED: f32 = 3.0;
 
 /// Simulates, prints the report, and saves `sewing.png`.
@@ -27,13 +28,17 @@ pub fn report(mut run: Run) -> ExitCode {
         .init_resource::<Own>()
         .add_systems(FixedLast, measure);
     let report = Report {
-        title: "A tunic, sewn around a figure",
+        title: "A shirt, sewn around a figure",
         picture: Some(run.picture()),
         figures: run.finish(),
         own: run.app.world().resource::<Own>().clone(),
     };
     report.print(&mut run, |Report { own, .. }| {
-        println!("  side seams       {:.1e} m apart at most", own.gap_m);
+        println!("  side seams       {:.1e} m apart at most", own.sides_gap_m);
+        println!(
+            "  sleeves          {:.1e} m apart at most",
+            own.sleeves_gap_m
+        );
         println!("  shoulders        at {:.2} m", own.shoulders_m);
         println!(
             "  stretch          {:.1} % at most once it is dressed",
@@ -51,22 +56,31 @@ fn measure(
     let (Some(front), Some(back)) = (named("front"), named("back")) else {
         return;
     };
+    let sleeves = ["right sleeve, front", "left sleeve, front"].map(named);
+    let [Some(right), Some(left)] = sleeves else {
+        return;
+    };
     let place = |(_, all, frame, _): (&Name, &ClothParticles, &ClothFrame, &ClothStats), cell| {
         all.position(cell).map(|place| frame.to_world(place))
     };
+    let gap = |ends: [_; 2]| match ends {
+        [Some(a), Some(b)] => Vec3::distance(a, b),
+        _ => 0.0,
+    };
     let [columns, rows] = [front.1.columns(), front.1.rows()];
-    if rows == 0 {
+    let [along, across] = [left.1.columns(), left.1.rows()];
+    if rows == 0 || across == 0 {
         return;
     }
-    own.gap_m = 0.0;
-    for row in rows / 2..rows {
-        for column in [0, columns - 1] {
-            let ends = [front, back].map(|of| place(of, (row, column)));
-            if let [Some(a), Some(b)] = ends {
-                own.gap_m = own.gap_m.max(a.distance(b));
-            }
-        }
-    }
+    let below_arms = (across..rows).flat_map(|row| [(row, 0), (row, columns - 1)]);
+    let sides = below_arms.map(|cell| gap([place(front, cell), place(back, cell)]));
+    own.sides_gap_m = sides.fold(0.0, f32::max);
+    let armholes = (0..across).flat_map(|row| {
+        let on_left = [place(front, (row, columns - 1)), place(left, (row, 0))];
+        let on_right = [place(front, (row, 0)), place(right, (row, along - 1))];
+        [on_left, on_right]
+    });
+    own.sleeves_gap_m = armholes.map(gap).fold(0.0, f32::max);
     own.shoulders_m = place(front, (0, 0)).map_or(0.0, |place| place.y);
     if time.elapsed_secs() > SETTLED {
         for (.., stats) in [front, back] {

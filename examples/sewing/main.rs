@@ -1,8 +1,8 @@
-//! A tunic that is sewn around a figure, which then turns.
+//! A shirt that is sewn around a figure from its flat pattern. Then the figure walks.
 //!
-//! Two panels hang in front of and behind a figure of capsules and balls. Two `ClothSeam`s join them: one at both shoulders,
-//! the other at both sides below the arms. They close in two seconds, while there is no gravity, as a program for patterns
-//! dresses a figure. The scene is in `scene.rs`, the report in `headless.rs`.
+//! Six flat panels hang in front of and behind a figure of capsules: front, back, and two for each sleeve. `ClothSeam`s join
+//! them: at the shoulders, at the sides, along the sleeves, and around the armholes. They close in two seconds, while there
+//! is no gravity, as a program for patterns dresses a figure. The scene is in `scene.rs`, the report in `headless.rs`.
 //!
 //! ```sh
 //! cargo run --example sewing                         # a window, or headless where no window opens
@@ -35,18 +35,18 @@ use examples_shared::{stage::Shot, start::Example};
 fn main() -> ExitCode {
     Example {
         name: "sewing",
-        about: "A tunic that is sewn around a figure.",
-        title: "a tunic, sewn around a figure",
+        about: "A shirt that is sewn around a figure from its flat pattern.",
+        title: "a shirt, sewn around a figure",
         seconds: "8",
         // Along the upper edge of a panel.
-        particles: 29,
+        particles: 25,
         // The whole figure, a little from the side.
         shot: Shot {
-            from: Vec3::new(1.1, 1.5, 2.3),
+            from: Vec3::new(1.2, 1.65, 2.9),
             focus: Vec3::new(0.0, 1.05, 0.0),
             fov: 0.6,
         },
-        drawn_at: 5.5,
+        drawn_at: 4.8,
         scene: scene::build,
         report: headless::report,
     }

@@ -1,4 +1,4 @@
-//! A figure, and the two panels of a tunic that are sewn around it.
+//! A figure, and the six panels of a shirt that are sewn around it: front, back, and two for each sleeve.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -9,22 +9,31 @@ use examples_shared::stage::StagePlugin;
 use examples_shared::window::Keys;
 use examples_shared::workshop::{Paint, Weave, Workshop};
 
-/// Width of a panel, and its height (m).
+/// Width of the front and the back, and their height (m).
 const WIDTH: f32 = 0.62;
 const HEIGHT: f32 = 0.84;
+/// Length of a sleeve (m).
+const SLEEVE: f32 = 0.27;
 /// Height of the shoulder seam, and how far in front of the figure's middle and behind it the panels begin (m).
 const TOP: f32 = 1.53;
-const AWAY: f32 = 0.24;
+const AWAY: f32 = 0.22;
 /// How long the seams take to close, and when gravity begins (s).
 const CLOSING: f32 = 2.0;
 const DRESSED: f32 = 2.25;
-/// When the figure begins to turn (s), how far to either side (rad), and how long from side to side and back (s).
-const TURNS: f32 = 4.0;
-const TURN: f32 = 0.7;
-const PERIOD: f32 = 4.0;
-/// Parts of a panel's upper edge that are a shoulder, on each side, and of its height that are left open for the arm.
+/// When the figure begins to walk (s), how fast (m/s), around a circle of which radius (m), and how long two steps take (s).
+const WALKS: f32 = 4.0;
+const SPEED: f32 = 0.7;
+const AROUND: f32 = 0.6;
+const STRIDE: f32 = 1.1;
+/// How far legs and arms swing to either side (rad).
+const LEGS: f32 = 0.35;
+const ARMS: f32 = 0.15;
+/// How far the arms are held off the body (rad), and where they begin (m).
+const LEAN: f32 = 1.2;
+const ARM: Vec3 = Vec3::new(0.19, 1.42, 0.0);
+/// Parts of a panel's upper edge that are a shoulder, on each side, and of its height that are open for the arm.
 const SHOULDER: f32 = 0.3;
-const ARMHOLE: f32 = 0.36;
+const ARMHOLE: f32 = 0.38;
 
 /// The scene, without a camera.
 pub fn build(app: &mut App) {
@@ -36,50 +45,120 @@ pub fn build(app: &mut App) {
     .add_plugins(Keys(&[("U", "undo the side seams, sew them again")]))
     .insert_resource(ClothGravity(Vec3::ZERO))
     .add_systems(Startup, (spawn_figure, lay_out))
-    .add_systems(FixedUpdate, (let_fall, turn).before(ClothSystems::Prepare))
+    .add_systems(FixedUpdate, (let_fall, walk).before(ClothSystems::Prepare))
     .add_systems(Update, undo);
 }
 
-/// The figure, which turns.
+/// The figure, which walks.
 #[derive(Component)]
 struct Figure;
+
+/// An arm or a leg, which swings about its upper end by so much (rad).
+#[derive(Component)]
+struct Limb {
+    rest: Transform,
+    about: Vec3,
+    by: f32,
+}
 
 /// A seam that can be undone.
 #[derive(Component)]
 struct Sides;
 
-/// Lays out both panels, and sews them together.
+/// The panels before the figure and behind it: their names' ends, and their distance from its middle (m).
+const LAYERS: [(&str, f32); 2] = [("front", AWAY), ("back", -AWAY)];
+
+/// Lays out all panels, and sews them together.
 fn lay_out(mut shop: Workshop) {
     let columns = shop.grid.0.max(8);
     let spacing = WIDTH / (columns - 1) as f32;
-    let rows = (HEIGHT / spacing).round() as u32 + 1;
+    let count = |length: f32| (length / spacing).round() as u32 + 1;
+    let (rows, across, along) = (count(HEIGHT), count(ARMHOLE * HEIGHT), count(SLEEVE));
     let fabrics = [front(&mut shop), back(&mut shop)];
-    let panels = [("front", AWAY), ("back", -AWAY)];
-    let [front, back] = [0, 1].map(|of| {
-        let ((name, away), fabric) = (panels[of], fabrics[of].clone());
-        let panel = (
-            Name::new(name),
-            Cloth::new(columns, rows, spacing),
-            Pins::none(),
-            ClothMaterial::COTTON,
-            ClothSelfCollision::of_thickness(0.006),
-            fabric,
-            ShowClothGizmos::nothing(),
-            Transform::from_xyz(-WIDTH / 2.0, TOP, away),
-        );
-        shop.commands.spawn(panel).id()
+    let body = [0, 1].map(|layer| {
+        let (name, away) = LAYERS[layer];
+        let place = Transform::from_xyz(-WIDTH / 2.0, TOP, away);
+        let cloth = Cloth::new(columns, rows, spacing);
+        spawn_panel(&mut shop, name.into(), cloth, place, fabrics[layer].clone())
     });
     let shoulder = (SHOULDER * columns as f32) as u32;
     let shoulders = Pin::filter(move |row, column| {
         row == 0 && (column < shoulder || column >= columns - shoulder)
     });
-    let below_arm = (ARMHOLE * rows as f32) as u32;
     let sides =
-        Pin::filter(move |row, column| row >= below_arm && (column == 0 || column == columns - 1));
-    let sew = |pin: Pin| ClothSeam::new((front, pin.clone()), (back, pin)).closing_in(CLOSING);
-    shop.commands
-        .spawn((Name::new("shoulders"), sew(shoulders)));
-    shop.commands.spawn((Name::new("sides"), Sides, sew(sides)));
+        Pin::filter(move |row, column| row + 1 >= across && (column == 0 || column == columns - 1));
+    sew(
+        &mut shop,
+        "shoulders",
+        [(body[0], shoulders.clone()), (body[1], shoulders)],
+    );
+    let sides = sew(
+        &mut shop,
+        "sides",
+        [(body[0], sides.clone()), (body[1], sides)],
+    );
+    shop.commands.entity(sides).insert(Sides);
+    for side in [-1.0_f32, 1.0] {
+        // Columns run to the right: from the hand to the shoulder on the left, where the figure's right arm is.
+        let (edge, inner, name) = match side < 0.0 {
+            true => (0, along - 1, "right sleeve"),
+            false => (columns - 1, 0, "left sleeve"),
+        };
+        let sleeve = [0, 1].map(|layer| {
+            let (of, away) = LAYERS[layer];
+            let place = sleeve_place(side, spacing * (across - 1) as f32, away);
+            let cloth = Cloth::new(along, across, spacing);
+            let fabric = fabrics[layer].clone();
+            spawn_panel(&mut shop, format!("{name}, {of}"), cloth, place, fabric)
+        });
+        for row in [0, across - 1] {
+            sew(&mut shop, name, sleeve.map(|panel| (panel, Pin::Row(row))));
+        }
+        for (panel, sleeve) in body.into_iter().zip(sleeve) {
+            let armhole = Pin::filter(move |row, column| row < across && column == edge);
+            sew(
+                &mut shop,
+                "armhole",
+                [(panel, armhole), (sleeve, Pin::Column(inner))],
+            );
+        }
+    }
+}
+
+/// Where a panel of a sleeve begins that is so wide (m), on the left (−1) or on the right: along the arm.
+fn sleeve_place(side: f32, width: f32, away: f32) -> Transform {
+    let turn = Quat::from_rotation_z(side * (LEAN - FRAC_PI_2));
+    let (along, up) = (turn * Vec3::X, turn * Vec3::Y);
+    let shoulder = Vec3::new(side * ARM.x, ARM.y, away);
+    // It begins beside the edge of the front or the back, or ends there.
+    let beside = (WIDTH / 2.0 - ARM.x) / along.x + 0.02;
+    let from = if side < 0.0 { -beside - SLEEVE } else { beside };
+    Transform::from_translation(shoulder + from * along + width / 2.0 * up).with_rotation(turn)
+}
+
+fn spawn_panel(
+    shop: &mut Workshop,
+    name: String,
+    cloth: Cloth,
+    place: Transform,
+    fabric: Paint,
+) -> Entity {
+    let panel = (
+        Name::new(name),
+        cloth,
+        Pins::none(),
+        ClothMaterial::COTTON,
+        ClothSelfCollision::of_thickness(0.006),
+        fabric,
+        ShowClothGizmos::nothing(),
+        place,
+    );
+    shop.commands.spawn(panel).id()
+}
+
+fn sew(shop: &mut Workshop, name: &'static str, [first, second]: [(Entity, Pin); 2]) -> Entity {
+    let seam = ClothSeam::new(first, second).closing_in(CLOSING);
+    shop.commands.spawn((Name::new(name), seam)).id()
 }
 
 fn let_fall(time: Res<Time>, mut gravity: ResMut<ClothGravity>) {
@@ -88,10 +167,22 @@ fn let_fall(time: Res<Time>, mut gravity: ResMut<ClothGravity>) {
     }
 }
 
-fn turn(time: Res<Time>, mut figures: Query<&mut Transform, With<Figure>>) {
-    let since = (time.elapsed_secs() - TURNS).max(0.0);
+fn walk(
+    time: Res<Time>,
+    mut figures: Query<&mut Transform, With<Figure>>,
+    mut limbs: Query<(&Limb, &mut Transform), Without<Figure>>,
+) {
+    let since = (time.elapsed_secs() - WALKS).max(0.0);
+    let turned = since * SPEED / AROUND;
+    let swing = (since * TAU / STRIDE).sin() * since.min(1.0);
     for mut figure in &mut figures {
-        figure.rotation = Quat::from_rotation_y(TURN * (since * TAU / PERIOD).sin());
+        let turn = Quat::from_rotation_y(turned);
+        figure.translation = turn * Vec3::NEG_X * AROUND + Vec3::X * AROUND;
+        figure.rotation = turn;
+    }
+    for (limb, mut place) in &mut limbs {
+        *place = limb.rest;
+        place.rotate_around(limb.about, Quat::from_rotation_x(limb.by * swing));
     }
 }
 
@@ -112,15 +203,21 @@ fn spawn_figure(mut shop: Workshop) {
     let figure = (figure, Transform::default(), Visibility::default());
     let figure = shop.commands.spawn(figure).id();
     let lying = Quat::from_rotation_z(FRAC_PI_2);
+    let at = |side: f32, place: Vec3| Vec3::new(side * place.x, place.y, 0.0);
     let arm = |side: f32| {
-        let lean = Quat::from_rotation_z(side * 0.9);
-        let shoulder = Vec3::new(side * 0.19, 1.42, 0.0);
+        let lean = Quat::from_rotation_z(side * LEAN);
         let down = lean * Vec3::NEG_Y;
-        Transform::from_translation(shoulder + 0.22 * down).with_rotation(lean)
+        let rest = Transform::from_translation(at(side, ARM) + 0.22 * down).with_rotation(lean);
+        let (about, by) = (at(side, ARM), side * ARMS);
+        (0.045, 0.44, Limb { rest, about, by })
     };
-    let leg = |side: f32| Transform::from_xyz(side * 0.09, 0.45, 0.0);
-    // Radius and length, and where.
-    let limbs = [
+    let leg = |side: f32| {
+        let rest = Transform::from_translation(at(side, Vec3::new(0.09, 0.45, 0.0)));
+        let (about, by) = (at(side, Vec3::new(0.09, 0.81, 0.0)), -side * LEGS);
+        (0.07, 0.72, Limb { rest, about, by })
+    };
+    // Radius and length (m), and where.
+    let trunk = [
         (0.125, 0.26, Transform::from_xyz(0.0, 1.20, 0.0)),
         (
             0.14,
@@ -134,15 +231,23 @@ fn spawn_figure(mut shop: Workshop) {
         ),
         (0.05, 0.12, Transform::from_xyz(0.0, 1.52, 0.0)),
         (0.10, 0.06, Transform::from_xyz(0.0, 1.68, 0.0)),
-        (0.045, 0.44, arm(1.0)),
-        (0.045, 0.44, arm(-1.0)),
-        (0.07, 0.72, leg(1.0)),
-        (0.07, 0.72, leg(-1.0)),
     ];
-    for (radius, length, place) in limbs {
+    let trunk = trunk.map(|(radius, length, rest)| {
+        let (about, by) = (rest.translation, 0.0);
+        (radius, length, Limb { rest, about, by })
+    });
+    let limbs = [arm(1.0), arm(-1.0), leg(1.0), leg(-1.0)];
+    for (radius, length, limb) in trunk.into_iter().chain(limbs) {
         let mesh = shop.mesh(Capsule3d::new(radius, length));
         let collider = ClothCollider::capsule(radius, length);
-        let limb = (mesh, skin.clone(), collider, place, ChildOf(figure));
+        let limb = (
+            mesh,
+            skin.clone(),
+            collider,
+            limb.rest,
+            limb,
+            ChildOf(figure),
+        );
         shop.commands.spawn(limb);
     }
 }

@@ -98,6 +98,12 @@ impl ClothTears {
         &self.0
     }
 
+    /// Number of torn edges that are whole in another.
+    pub(crate) fn count_beyond(&self, other: &Self) -> usize {
+        let known: HashSet<&[u32; 2]> = other.0.iter().collect();
+        self.0.iter().filter(|edge| !known.contains(edge)).count()
+    }
+
     /// The first edges of these.
     pub(crate) fn first(&self, count: usize) -> Self {
         Self(self.0[..count.min(self.0.len())].to_vec())

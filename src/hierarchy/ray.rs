@@ -1,6 +1,6 @@
 //! Which face, or segment of a rope, a ray hits first: a top-down query with the ray as its probe.
 
-use bevy::math::{DVec3, Ray3d, Vec3, bounding::BoundingSphere};
+use bevy::math::{DVec2, DVec3, Ray3d, Vec3, Vec3Swizzles, bounding::BoundingSphere};
 
 use super::{
     bounds::NodeBounds,
@@ -30,6 +30,8 @@ pub(crate) struct RayHit {
 pub(crate) struct RayQuery {
     bounds: NodeBounds,
     query: TopDownQuery,
+    /// The corners of a particle's faces, [seen](View) by the ray.
+    corners: Vec<DVec3>,
 }
 
 impl RayQuery {
@@ -85,14 +87,53 @@ impl RayQuery {
             });
             return hits.min_by(first);
         }
-        let faces = surface.faces();
-        let hits = candidates
-            .flat_map(|owner| faces.range_of(owner))
-            .filter_map(|face| {
-                let corners = faces.all()[face];
-                new(face, corners, hit(ray, corners.map_inline(place))?)
-            });
-        hits.min_by(first)
+        let view = View::of(ray);
+        let (faces, fans, blocks) = (surface.faces(), surface.fans(), particles.blocks());
+        let mut nearest: Option<RayHit> = None;
+        for owner in candidates {
+            let fan = fans.of(owner);
+            self.corners.clear();
+            let places = fan.corners.iter();
+            let places = places.map(|slot| view.see(blocks[slot.block].position(slot.lane)));
+            self.corners.extend(places);
+            for (&corners, face) in fan.faces.iter().zip(faces.range_of(owner)) {
+                let Some(hit) = hit(corners.map_inline(|corner| self.corners[corner as usize]))
+                else {
+                    continue;
+                };
+                let found = new(face, faces.all()[face], hit);
+                if let Some(found) =
+                    found.filter(|of| nearest.is_none_or(|known| first(of, &known).is_lt()))
+                {
+                    nearest = Some(found);
+                }
+            }
+        }
+        nearest
+    }
+}
+
+/// A frame along a ray, whose origin is zero: two axes across, and the ray.
+struct View {
+    origin: DVec3,
+    axes: [DVec3; 3],
+}
+
+impl View {
+    fn of(ray: Ray3d) -> Self {
+        let along = ray.direction.as_dvec3().normalize();
+        let (u, v) = along.any_orthonormal_pair();
+        Self {
+            origin: ray.origin.as_dvec3(),
+            axes: [u, v, along],
+        }
+    }
+
+    /// A point in it (m).
+    #[inline]
+    fn see(&self, point: Vec3) -> DVec3 {
+        let offset = point.as_dvec3() - self.origin;
+        DVec3::from(self.axes.map_inline(|axis| axis.dot(offset)))
     }
 }
 
@@ -126,23 +167,29 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
     (half >= 0.0 && from <= to).then_some([from, to])
 }
 
-/// The weights of the corners where a ray hits their triangle, and the distance (m). They are the volumes of the tetrahedra
-/// that the ray spans with each edge (Plücker's test; Woop, Benthin and Wald 2013). Two triangles get the same volume, up
-/// to its sign, for the edge that they share. So no ray passes between them.
-fn hit(ray: Ray3d, corners: [Vec3; 3]) -> Option<([f32; 3], f32)> {
-    let direction = ray.direction.as_dvec3();
-    let [a, b, c] = corners.map_inline(|corner| corner.as_dvec3() - ray.origin.as_dvec3());
-    let volumes = [b.cross(c), c.cross(a), a.cross(b)].map_inline(|normal| direction.dot(normal));
-    let is_through = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
-    let sum = volumes.iter().sum::<f64>();
+/// The weights of the corners, seen by the ray, where it hits their triangle, and the distance (m). They are the areas that it
+/// spans with each edge (Woop, Benthin and Wald 2013). Two triangles get the same area, up to its sign, for the edge that they
+/// share. So no ray passes between them.
+#[inline]
+fn hit(corners: [DVec3; 3]) -> Option<([f32; 3], f32)> {
+    let [a, b, c] = corners.map_inline(|corner| corner.xy());
+    let [least, most] = [a.min(b).min(c), a.max(b).max(c)];
+    // False for NaN.
+    if !(least.cmple(DVec2::ZERO).all() && most.cmpge(DVec2::ZERO).all()) {
+        return None;
+    }
+    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
+    let is_through = areas.iter().all(|v| *v >= 0.0) || areas.iter().all(|v| *v <= 0.0);
+    let sum = areas.iter().sum::<f64>();
     if !is_through || sum == 0.0 {
         return None;
     }
-    let weights = DVec3::from(volumes) / sum;
-    let place = a * weights.x + b * weights.y + c * weights.z;
-    let distance = place.dot(direction) as f32;
-    (distance >= 0.0).then_some((
-        weights.to_array().map_inline(|weight| weight as f32),
-        distance,
-    ))
+    let weights = areas.map_inline(|area| area / sum);
+    let distance: f64 = weights
+        .iter()
+        .zip(&corners)
+        .map(|(weight, of)| weight * of.z)
+        .sum();
+    let weights = weights.map_inline(|weight| weight as f32);
+    (distance >= 0.0).then_some((weights, distance as f32))
 }

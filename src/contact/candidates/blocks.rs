@@ -199,8 +199,7 @@ impl Candidates {
             candidates: first[0]..self.all.len(),
             blocks: first[1]..self.blocks.len(),
             budgets: first[2]..self.budgets.len(),
-            has_points: widest_left.is_some()
-                && self.blocks[first[1]..].iter().any(|of| of.points != 0),
+            has_points: self.blocks[first[1]..].iter().any(|of| of.points != 0),
         }
     }
 
@@ -248,7 +247,7 @@ pub(crate) struct Ranges {
     pub candidates: Range<usize>,
     pub blocks: Range<usize>,
     pub budgets: Range<usize>,
-    /// Whether particles are pushed beside triangles.
+    /// Whether any particles are pushed, beside triangles or alone.
     pub has_points: bool,
 }
 

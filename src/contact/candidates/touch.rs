@@ -3,7 +3,14 @@
 use bevy::{math::Vec3, reflect::Reflect};
 
 use super::{blocks::Ranges, narrow_phase::NarrowPhase};
-use crate::contact::{colliders::MovingCollider, friction::Impulse};
+use crate::{
+    contact::{colliders::MovingCollider, friction::Impulse},
+    solver::SubStep,
+};
+
+/// The penetrating area of triangles is measured in every fourth sub-step, in the last one, and until there is some. It
+/// costs half as much as a push.
+const MEASURED_EACH: u32 = 4;
 
 /// A particle near a collider, and its depth.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
@@ -47,6 +54,12 @@ pub struct Touch {
 }
 
 impl Touch {
+    /// Whether the penetrating area of triangles is measured in this sub-step.
+    pub(crate) fn is_measured_in(&self, substep: SubStep) -> bool {
+        let next = substep.index + 1;
+        self.area == 0.0 || next.is_multiple_of(MEASURED_EACH) || next == substep.count
+    }
+
     /// Adds the impulse of a sub-step that takes some seconds.
     pub(crate) fn add_impulse(&mut self, given: &Impulse, seconds: f32) {
         let seconds = f64::from(seconds);

@@ -16,10 +16,6 @@ use crate::{
     solver::SubStep,
 };
 
-/// The penetrating area of triangles is measured in every fourth sub-step, in the last one, and until there is some. It
-/// costs half as much as a push.
-const MEASURED_EACH: u32 = 4;
-
 /// A particle is pushed by six triangles, by at least a third of each.
 const TRIANGLES_A_PUSH: f32 = 3.0;
 
@@ -138,6 +134,11 @@ impl Detection {
         };
         let lanes = lanes_of(1.0);
         self.embedding.hide(touch.id, particles);
+        let of = (&motion, settings);
+        let points = match touch.of.has_points && !is_guarded {
+            true => push_particles(particles, contacts, (&mut [], 0), of, &lanes),
+            false => ContactResult::default(),
+        };
         let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
             _ if is_guarded => {
@@ -162,36 +163,23 @@ impl Detection {
                 (push_shape(particles, &mut pushing, known, edges), None)
             }
             NarrowPhase::Triangles => {
-                let points = if touch.of.has_points {
-                    let of = (&motion, settings);
-                    push_particles(particles, contacts, (&mut [], 0), of, &lanes)
-                } else {
-                    ContactResult::default()
-                };
-                let is_measured = touch.area == 0.0
-                    || (substep.index + 1).is_multiple_of(MEASURED_EACH)
-                    || substep.index + 1 == substep.count;
                 let mut pushed = TrianglePush::new(
                     &all[touch.of.candidates.clone()],
                     (contacts, first),
                     &mut budgets[touch.of.budgets.clone()],
                     (self.surface.fans(), self.surface.max_faces() as f32),
                     [margin.left(), margin.moved_now()],
-                    is_measured,
+                    touch.is_measured_in(substep),
                 );
                 let core = CoreMotion::new(motion, settings);
                 let stopped = pushed.push(particles, (&core, &lanes_of(TRIANGLES_A_PUSH)), from);
-                (pushed.found.and(&points), stopped)
+                (pushed.found, stopped)
             }
-            NarrowPhase::Auto | NarrowPhase::Particles => {
-                let of = (&motion, settings);
-                let found = push_particles(particles, contacts, (&mut [], 0), of, &lanes);
-                (found, None)
-            }
+            NarrowPhase::Auto | NarrowPhase::Particles => (ContactResult::default(), None),
         };
         let of = (touch.id, &motion);
         let embedded = self.embedding.push(particles, blocks, of, settings);
-        (found.and(&embedded), stopped)
+        (found.and(&points).and(&embedded), stopped)
     }
 
     /// Gives a body its share of the pushes, if the collider is one. Returns the impulse on the collider.

@@ -36,6 +36,8 @@ impl ContactResult {
     pub fn and(mut self, other: &Self) -> Self {
         self.deepest = self.deepest.max(other.deepest);
         self.farthest_push += other.farthest_push;
+        self.area += other.area;
+        self.volume += other.volume;
         self.given.merge(&other.given);
         self
     }

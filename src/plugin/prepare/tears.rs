@@ -105,11 +105,7 @@ pub(super) fn follow_tears(
     };
     let torn = particles.torn(&before, surface, &parents, wanted.has_layers);
     **particles = torn;
-    let count = recipe
-        .tears
-        .edges()
-        .len()
-        .saturating_sub(built.tears().edges().len());
+    let count = recipe.tears.count_beyond(built.tears());
     let place = place_of_tear([&recipe.tears, built.tears()], before.len(), particles);
     built.unreported_tear = place.map(|place| (place, count));
     hold_parts(surface, &parents, state);
