@@ -1,5 +1,7 @@
 //! Which face, or segment of a rope, a ray hits first: a top-down query with the ray as its probe.
 
+use std::cmp::Ordering;
+
 use bevy::math::{DVec2, DVec3, Ray3d, Vec3, Vec3Swizzles, bounding::BoundingSphere};
 
 use super::{
@@ -23,6 +25,14 @@ pub(crate) struct RayHit {
     pub weights: [f32; 3],
     /// Along the ray (m).
     pub distance: f32,
+}
+
+impl RayHit {
+    /// Nearer ones first.
+    fn order(&self, other: &Self) -> Ordering {
+        let by_distance = self.distance.total_cmp(&other.distance);
+        by_distance.then(self.face.cmp(&other.face))
+    }
 }
 
 /// Memory of a search for a ray, which is reused.
@@ -67,44 +77,63 @@ impl RayQuery {
             particle_radius: 0.0,
         };
         self.query.search(tree, &self.bounds, particles, &probe);
+        let nearest = match rope {
+            Some(radius) => self.nearest_segment(surface, particles, ray, radius),
+            None => self.nearest_face(surface, particles, &View::of(ray)),
+        };
+        nearest.filter(|hit| hit.distance <= max_distance)
+    }
+
+    /// The first segment of a rope that a ray hits, of those that were found.
+    fn nearest_segment(
+        &self,
+        surface: &Surface,
+        particles: &ClothParticles,
+        ray: Ray3d,
+        radius: f32,
+    ) -> Option<RayHit> {
         let place = |particle: u32| particles.position_at(particle as usize);
-        let new = |face: usize, particles: [u32; 3], (weights, distance): ([f32; 3], f32)| {
-            (distance <= max_distance).then_some(RayHit {
-                face,
-                particles,
+        let found = self.query.candidates().iter().copied();
+        let found = found.filter(|from| (*from as usize) + 1 < surface.len());
+        let hits = found.filter_map(|from| {
+            let (weights, distance) = hit_segment(ray, [place(from), place(from + 1)], radius)?;
+            Some(RayHit {
+                face: from as usize,
+                particles: [from, from + 1, from + 1],
                 weights,
                 distance,
             })
-        };
-        let first =
-            |a: &RayHit, b: &RayHit| (a.distance.total_cmp(&b.distance)).then(a.face.cmp(&b.face));
-        let candidates = self.query.candidates().iter().copied();
-        if let Some(radius) = rope {
-            let segments = candidates.filter(|from| (*from as usize) + 1 < surface.len());
-            let hits = segments.filter_map(|from| {
-                let hit = hit_segment(ray, [place(from), place(from + 1)], radius)?;
-                new(from as usize, [from, from + 1, from + 1], hit)
-            });
-            return hits.min_by(first);
-        }
-        let view = View::of(ray);
+        });
+        hits.min_by(RayHit::order)
+    }
+
+    /// The first face that a ray hits, of those of the particles that were found.
+    fn nearest_face(
+        &mut self,
+        surface: &Surface,
+        particles: &ClothParticles,
+        view: &View,
+    ) -> Option<RayHit> {
         let (faces, fans, blocks) = (surface.faces(), surface.fans(), particles.blocks());
         let mut nearest: Option<RayHit> = None;
-        for owner in candidates {
+        for &owner in self.query.candidates() {
             let fan = fans.of(owner);
-            self.corners.clear();
             let places = fan.corners.iter();
             let places = places.map(|slot| view.see(blocks[slot.block].position(slot.lane)));
+            self.corners.clear();
             self.corners.extend(places);
             for (&corners, face) in fan.faces.iter().zip(faces.range_of(owner)) {
-                let Some(hit) = hit(corners.map_inline(|corner| self.corners[corner as usize]))
-                else {
+                let corners = corners.map_inline(|corner| self.corners[corner as usize]);
+                let Some((weights, distance)) = hit(corners) else {
                     continue;
                 };
-                let found = new(face, faces.all()[face], hit);
-                if let Some(found) =
-                    found.filter(|of| nearest.is_none_or(|known| first(of, &known).is_lt()))
-                {
+                let found = RayHit {
+                    face,
+                    particles: faces.all()[face],
+                    weights,
+                    distance,
+                };
+                if nearest.is_none_or(|known| found.order(&known).is_lt()) {
                     nearest = Some(found);
                 }
             }
