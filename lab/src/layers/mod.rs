@@ -2,7 +2,7 @@
 //! passes through.
 //!
 //! An app without a renderer, its systems one after the other. After every tick all pairs of triangles are compared by brute force.
-//! Drops are compared with other choices: with [balls](particles) found by a hash, and with a [hash](hash) in place of the tree.
+//! Drops are compared with other choices: with [balls](particles) found by a hash, and with a [hash] in place of the tree.
 
 mod charts;
 mod compared;
