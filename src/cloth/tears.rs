@@ -114,3 +114,20 @@ impl ClothTears {
         self.0.is_empty()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As many edges are mended as are torn: the torn ones count.
+    #[test]
+    fn mended_edges_do_not_count_against_torn_ones() {
+        let [mut before, mut now] = [ClothTears::none(), ClothTears::none()];
+        before.tear_all([[1, 2], [2, 3], [3, 4]]);
+        now.tear_all([[3, 2], [8, 7], [8, 9]]);
+        assert_eq!(now.count_beyond(&before), 2);
+        assert_eq!(before.count_beyond(&now), 2);
+        assert_eq!(now.count_beyond(&now), 0);
+        assert_eq!(ClothTears::none().count_beyond(&now), 0);
+    }
+}

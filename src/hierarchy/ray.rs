@@ -142,7 +142,7 @@ impl RayQuery {
     }
 }
 
-/// A frame along a ray, whose origin is zero: two axes across, and the ray.
+/// A frame with a ray's origin as its zero: two axes across the ray, and the ray.
 struct View {
     origin: DVec3,
     axes: [DVec3; 3],
@@ -192,7 +192,7 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
     let radius = around.radius() * ROUNDING + offset.length() * (ROUNDING - 1.0);
     let half = (radius * radius - off).sqrt();
     let (from, to) = ((middle - half).max(0.0), (middle + half).min(max_distance));
-    // False for NaN.
+    // What is not a number is left to the areas.
     (half >= 0.0 && from <= to).then_some([from, to])
 }
 

@@ -54,12 +54,13 @@ pub fn all(rows: &[Row]) -> Chart {
         .filter(|row| row.cloths == many && row.state.starts_with("awake"))
         .max_by_key(|row| row.colliders);
     let title = most.map_or("What colliders cost".into(), |row| {
-        format!(
-            "{} colliders that are far add {:+.1} % to a tick of {} cloths",
-            row.colliders,
-            100.0 * row.added() / row.ms_without,
-            row.cloths
-        )
+        let percent = 100.0 * row.added() / row.ms_without;
+        let added = match percent < 1.0 {
+            true => "less than 1 %".into(),
+            false => format!("{percent:.1} %"),
+        };
+        let [colliders, cloths] = [row.colliders, row.cloths];
+        format!("{colliders} colliders that are far add {added} to a tick of {cloths} cloths")
     });
     Chart::new(
         "colliders",

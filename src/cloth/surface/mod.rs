@@ -96,7 +96,7 @@ struct Torn {
     origin: Vec<u32>,
 }
 
-/// Computed when they are first asked for: a cloth without contacts needs none of them.
+/// Computed when they are first asked for: a cloth that nothing touches or points at needs none of them.
 #[derive(Default, Clone)]
 struct Derived {
     uvs: OnceLock<Vec<Vec2>>,

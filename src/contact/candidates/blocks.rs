@@ -49,9 +49,12 @@ pub(crate) struct ContactBlock {
     pub points: u8,
     /// Bit mask of the lanes that are tested one by one in this sub-step.
     pub left: u8,
-    /// Until everything has moved this far, no particle can touch, and no triangle that one of them owns (m).
+    /// Until everything has moved this far, none of its particles can touch (m).
     pub clear_until: f32,
+    /// Until everything has moved this far, no triangle that one of them owns can touch (m).
     pub faces_clear_until: f32,
+    /// Whether that was used up as the sub-step began.
+    pub are_faces_due: bool,
     /// Largest displacement of its particles since the search (m), where that is measured; else 0.
     pub moved: f32,
     /// Each particle's share of the cloth's area (m²).
@@ -72,6 +75,7 @@ impl ContactBlock {
             left: 0,
             clear_until: f32::NEG_INFINITY,
             faces_clear_until: f32::NEG_INFINITY,
+            are_faces_due: false,
             moved: 0.0,
             area: [0.0; LANES],
             grip: [1.0; LANES],
@@ -89,9 +93,9 @@ impl ContactBlock {
 pub(crate) struct TestedFaces<F> {
     /// Whether a triangle is excluded.
     pub is_left_out: F,
-    /// Up to this width (m), triangles are left to their particles; beside the others, no particle is pushed. `None` if all
-    /// particles are.
-    pub widest_left: Option<f32>,
+    /// The largest width of fine triangles (m): their particles are pushed in their place. 0 if all count as coarse, and no
+    /// particle is pushed; `None` if each particle is pushed beside the triangles.
+    pub widest_fine: Option<f32>,
 }
 
 /// Everything that colliders may touch in the tick.
@@ -139,10 +143,10 @@ impl Candidates {
         let first = [self.all.len(), self.blocks.len(), self.budgets.len()];
         self.sort(found, surface.len());
         self.marks.resize(layout.blocks(), 0);
-        let widest_left = faces.and_then(|faces| faces.widest_left);
-        let is_left = |particle: u32| {
-            let widest = widest_left.filter(|widest| *widest > 0.0);
-            widest.is_some_and(|widest| surface.face_widths()[particle as usize] <= widest)
+        let widest_fine = faces.and_then(|faces| faces.widest_fine);
+        let some_fine = widest_fine.filter(|widest| *widest > 0.0);
+        let is_fine = |particle: u32| {
+            some_fine.is_some_and(|widest| surface.face_widths()[particle as usize] <= widest)
         };
         for index in first[0]..self.all.len() {
             let particle = self.all[index].particle;
@@ -154,7 +158,7 @@ impl Candidates {
             };
             let mut owned = surface.faces().of(particle).iter();
             // A triangle that is left out takes the particle's others with it.
-            if !is_left(particle) && !owned.any(&faces.is_left_out) {
+            if !is_fine(particle) && !owned.any(&faces.is_left_out) {
                 let fan = surface.fans().of(particle);
                 self.all[index].has_faces = !fan.faces.is_empty();
                 for corner in fan.corners {
@@ -165,7 +169,7 @@ impl Candidates {
         self.blocks[first[1]..].sort_unstable_by_key(|contact| contact.block);
         for (index, contact) in self.blocks.iter_mut().enumerate().skip(first[1]) {
             self.marks[contact.block as usize] = index as u32;
-            if widest_left.is_some() {
+            if widest_fine.is_some() {
                 contact.points = 0;
             }
         }
@@ -175,7 +179,8 @@ impl Candidates {
             candidate.place = (index * LANES + lane) as u32;
             let contact = &mut self.blocks[index];
             contact.lanes |= 1 << lane;
-            if is_left(candidate.particle) {
+            // Also one whose triangles are left out: those of its neighbours do not push it.
+            if some_fine.is_some() && !candidate.has_faces {
                 contact.points |= 1 << lane;
             }
             contact.area[lane] = surface.area_of(candidate.particle as usize);
@@ -277,9 +282,10 @@ mod tests {
                     let found: Vec<u32> = (0..most).map(|_| random.below(count as u32)).collect();
                     let left_out = random.below(count as u32);
                     let is_left_out = |corners: &[u32; 3]| corners.contains(&left_out);
+                    let widest_fine = [None, Some(0.0), Some(0.1), Some(10.0)][tick / 2 % 4];
                     let faces = TestedFaces {
                         is_left_out,
-                        widest_left: None,
+                        widest_fine,
                     };
                     let by_triangles = (tick % 2 == 0).then_some(&faces);
                     let ranges = candidates.add(&found, &surface, layout, by_triangles);
@@ -301,9 +307,19 @@ mod tests {
                         assert!(ranges.blocks.contains(&block));
                         assert_eq!((contact.block as usize, lane), (slot.block, slot.lane));
                         let meets = surface.faces().of(candidate.particle);
-                        let is_whole = by_triangles.is_some() && !meets.iter().any(is_left_out);
-                        let fan = candidate.fan(surface.fans());
                         let own = surface.fans().of(candidate.particle);
+                        let is_whole = by_triangles.is_some() && !meets.iter().any(is_left_out);
+                        let width = surface.face_widths()[candidate.particle as usize];
+                        let is_fine = widest_fine.is_some_and(|widest| width <= widest);
+                        let is_whole = is_whole && !is_fine;
+                        let is_point = contact.points & (1 << lane) != 0;
+                        let is_pushed = match (by_triangles, widest_fine) {
+                            (None, _) | (_, None) => true,
+                            (_, Some(0.0)) => false,
+                            (_, Some(_)) => own.faces.is_empty() || !is_whole,
+                        };
+                        assert_eq!(is_point, is_pushed, "a point, or by its triangles");
+                        let fan = candidate.fan(surface.fans());
                         assert_eq!(fan.faces, if is_whole { own.faces } else { &[] });
                         assert!(fan.corners.iter().all(|corner| has_block(corner.block)));
                     }

@@ -52,7 +52,7 @@ impl NarrowPhase {
     ];
 
     /// The narrow phase of a collider, on a cloth with a particle radius (m). `Auto` where it
-    /// [depends on the triangle](Self::widest_left_to_particles).
+    /// [depends on the triangle](Self::widest_fine).
     pub(crate) fn of(
         self,
         collider: &MovingCollider,
@@ -76,8 +76,8 @@ impl NarrowPhase {
         }
     }
 
-    /// The width of triangles (m) up to which their particles are enough for a ball or capsule of this radius (m).
-    pub(crate) fn widest_left_to_particles(radius: f32) -> f32 {
+    /// The largest width (m) of triangles whose particles are enough for a ball or a capsule of this radius (m).
+    pub(crate) fn widest_fine(radius: f32) -> f32 {
         radius / PARTICLES_FROM
     }
 

@@ -18,7 +18,7 @@ const MEASURED_EACH: u32 = 4;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ContactPoint {
-    /// Index of the particle. If the collider is tested against triangles, the particle that owns them.
+    /// Index of the particle. If triangles of its own are tested, it stands for them.
     pub particle: u32,
     /// Its largest depth inside the collider in the tick (m). If it stayed outside, minus its smallest distance. −∞ if it
     /// was not tested, because it is pinned or far away, and outside of shapes other than balls, capsules, planes and
@@ -39,7 +39,7 @@ pub struct Touch {
     /// The largest depth (m), 0 if nothing was inside.
     pub deepest: f32,
     /// The largest penetrating area of the cloth at the end of a sub-step (m²). Against triangles, it is measured in
-    /// every fourth sub-step and in the last.
+    /// every fourth sub-step and in the last. Of particles, each counts with its share of the cloth's area.
     pub area: f32,
     /// The largest ∫ depth dA over that area (m³).
     pub volume: f32,

@@ -92,7 +92,8 @@ impl Detection {
         }
     }
 
-    /// Returns the probe to search for this collider in the tick, and the narrow phase for it. Triangles reach
+    /// Returns the probe to search for this collider in the tick, and the narrow phase for it: `Auto` where that depends on the
+    /// triangles near it. Triangles reach
     /// `longest_edge` (m) from the particle that owns them.
     pub fn probe(
         &self,
@@ -205,11 +206,11 @@ impl Detection {
             return;
         }
         let is_embedded = self.is_embedded(id);
-        let widest_left = match (narrow_phase, collider.shape.radius()) {
-            (NarrowPhase::Auto, Some(radius)) => NarrowPhase::widest_left_to_particles(radius),
+        let widest_fine = match (narrow_phase, collider.shape.radius()) {
+            (NarrowPhase::Auto, Some(radius)) => NarrowPhase::widest_fine(radius),
             _ => 0.0,
         };
-        let is_wide = |of: &u32| self.surface.face_widths()[*of as usize] > widest_left;
+        let is_wide = |of: &u32| self.surface.face_widths()[*of as usize] > widest_fine;
         let narrow_phase = match narrow_phase {
             // The triangles of what is inside would be pushed the nearest way.
             _ if is_embedded => NarrowPhase::Particles,
@@ -234,7 +235,7 @@ impl Detection {
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
         let faces = TestedFaces {
             is_left_out,
-            widest_left: collider.shape.radius().map(|_| widest_left),
+            widest_fine: collider.shape.radius().map(|_| widest_fine),
         };
         let faces = by_triangles.then_some(&faces);
         let of = self.candidates.add(found, &self.surface, layout, faces);

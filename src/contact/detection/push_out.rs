@@ -135,7 +135,9 @@ impl Detection {
         let lanes = lanes_of(1.0);
         self.embedding.hide(touch.id, particles);
         let of = (&motion, settings);
-        let points = match touch.of.has_points && !is_guarded {
+        // Once, however often triangles are searched for again.
+        let has_points = touch.of.has_points && from == ResumePoint::default();
+        let points = match has_points && !is_guarded {
             true => push_particles(particles, contacts, (&mut [], 0), of, &lanes),
             false => ContactResult::default(),
         };
@@ -168,7 +170,7 @@ impl Detection {
                     (contacts, first),
                     &mut budgets[touch.of.budgets.clone()],
                     (self.surface.fans(), self.surface.max_faces() as f32),
-                    [margin.left(), margin.moved_now()],
+                    [margin.left() - points.farthest_push, margin.moved_now()],
                     touch.is_measured_in(substep),
                 );
                 let core = CoreMotion::new(motion, settings);

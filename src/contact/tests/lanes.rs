@@ -44,6 +44,7 @@ fn blocks(random: &mut Random) -> (Vec<Block>, Vec<ContactBlock>) {
         }
     }
     let contact = |block| ContactBlock {
+        points: random.below(256) as u8 | 1,
         grip: std::array::from_fn(|_| random.between(0.0, 2.0)),
         ..ContactBlock::new(block)
     };
@@ -83,7 +84,8 @@ fn hull() -> ColliderShape {
 fn bits(blocks: &[Block], contacts: &[ContactBlock], sums: &Sums) -> Vec<u32> {
     let of_blocks = blocks.iter().flat_map(|block| block.view().iter());
     let of_contacts = contacts.iter().flat_map(|contact| contact.depth.iter());
-    let clear = contacts.iter().map(|contact| &contact.clear_until);
+    let clear = contacts.iter();
+    let clear = clear.flat_map(|contact| [&contact.clear_until, &contact.faces_clear_until]);
     let vectors = sums.linear.iter().chain(&sums.angular).flatten();
     let lanes = [&sums.deepest, &sums.farthest_push, &sums.area, &sums.volume];
     let of_sums = lanes.into_iter().flatten().chain(vectors);

@@ -66,6 +66,9 @@ impl BuildRequest {
         );
         // The first tick needs them.
         shared.surface.fans();
+        if shared.surface.as_grid().is_none() {
+            shared.surface.face_widths();
+        }
         if before.is_none_or(Shared::has_sheet) {
             shared.sheet();
         }

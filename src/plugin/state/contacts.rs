@@ -36,7 +36,7 @@ pub struct ClothContact {
     /// Angular impulse of these pushes about the origin of the collider's shape, in the world (N·m·s). It is the
     /// entity's origin, except for shapes with an offset from their entity.
     pub angular_impulse: Vec3,
-    /// Whether the collider was tested against particles or triangles.
+    /// Whether the collider was tested against particles or triangles: `Triangles` if against any.
     pub narrow_phase: NarrowPhase,
     /// Whether the cloth began inside of it, and is let out on one side or left alone:
     /// [`ClothLimit::Embedded`](crate::solver::ClothLimit::Embedded).

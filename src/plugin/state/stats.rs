@@ -38,8 +38,8 @@ pub struct ClothStats {
     pub leaf_tests: usize,
     /// Number of times that the search was repeated within the tick, because particles moved farther than expected.
     pub requeries: u32,
-    /// Particles that were pushed out of a collider, counted once for each collider. Cells in place of particles for
-    /// colliders that are tested against triangles.
+    /// Particles that were pushed out of a collider, counted once for each collider. A particle whose triangles are
+    /// tested stands for them.
     pub contacts: usize,
     /// Pairs of features that may come near each other, within the cloth or between it and other cloths: vertices with
     /// faces, edges with edges. 0 without [`ClothSelfCollision`](crate::contact::ClothSelfCollision).

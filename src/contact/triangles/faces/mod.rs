@@ -25,7 +25,7 @@ use crate::{
 const MAX_PASSES: u32 = 4;
 
 /// Where to continue.
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub(crate) struct ResumePoint {
     pass: u32,
     /// A particle, and the index among its triangles.
@@ -133,7 +133,7 @@ impl<'a> TrianglePush<'a> {
         for contact in self.contacts.iter_mut() {
             // False for NaN.
             let is_clear = lanes.odometer < contact.faces_clear_until;
-            contact.left = if is_clear { 0 } else { u8::MAX };
+            contact.are_faces_due = !is_clear;
             if !is_clear {
                 contact.faces_clear_until = f32::INFINITY;
             }
@@ -146,7 +146,8 @@ impl<'a> TrianglePush<'a> {
                 continue;
             }
             let now = lanes.odometer + self.pushed();
-            if self.contacts[contact].left == 0 && now < self.contacts[contact].faces_clear_until {
+            let of = &self.contacts[contact];
+            if !of.are_faces_due && now < of.faces_clear_until {
                 continue;
             }
             let slot = Slot {
