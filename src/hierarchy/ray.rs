@@ -201,7 +201,7 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
 /// share. So no ray passes between them.
 #[inline]
 fn hit(corners: [DVec3; 3]) -> Option<([f32; 3], f32)> {
-    let [a, b, c] = corners.map_inline(|corner| corner.xy());
+    let [a, b, c] = corners.map_inline(Vec3Swizzles::xy);
     let [least, most] = [a.min(b).min(c), a.max(b).max(c)];
     // False for NaN.
     if !(least.cmple(DVec2::ZERO).all() && most.cmpge(DVec2::ZERO).all()) {
