@@ -192,7 +192,7 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
     let radius = around.radius() * ROUNDING + offset.length() * (ROUNDING - 1.0);
     let half = (radius * radius - off).sqrt();
     let (from, to) = ((middle - half).max(0.0), (middle + half).min(max_distance));
-    // What is not a number is left to the areas.
+    // False for NaN.
     (half >= 0.0 && from <= to).then_some([from, to])
 }
 
@@ -203,7 +203,7 @@ fn chord(around: &BoundingSphere, ray: Ray3d, max_distance: f32) -> Option<[f32;
 fn hit(corners: [DVec3; 3]) -> Option<([f32; 3], f32)> {
     let [a, b, c] = corners.map_inline(Vec3Swizzles::xy);
     let [least, most] = [a.min(b).min(c), a.max(b).max(c)];
-    // False for NaN.
+    // The areas tell of NaN.
     if !(least.cmple(DVec2::ZERO).all() && most.cmpge(DVec2::ZERO).all()) {
         return None;
     }

@@ -93,9 +93,16 @@ impl ContactBlock {
 pub(crate) struct TestedFaces<F> {
     /// Whether a triangle is excluded.
     pub is_left_out: F,
-    /// The largest width of fine triangles (m): their particles are pushed in their place. 0 if all count as coarse, and no
-    /// particle is pushed; `None` if each particle is pushed beside the triangles.
-    pub widest_fine: Option<f32>,
+    pub pushed: PushedParticles,
+}
+
+/// Which particles are pushed beside tested triangles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum PushedParticles {
+    All,
+    /// Those whose triangles have at most this [width](Surface::face_widths) (m): these triangles are not tested.
+    Fine(f32),
+    None,
 }
 
 /// Everything that colliders may touch in the tick.
@@ -143,10 +150,10 @@ impl Candidates {
         let first = [self.all.len(), self.blocks.len(), self.budgets.len()];
         self.sort(found, surface.len());
         self.marks.resize(layout.blocks(), 0);
-        let widest_fine = faces.and_then(|faces| faces.widest_fine);
-        let some_fine = widest_fine.filter(|widest| *widest > 0.0);
-        let is_fine = |particle: u32| {
-            some_fine.is_some_and(|widest| surface.face_widths()[particle as usize] <= widest)
+        let pushed = faces.map_or(PushedParticles::All, |faces| faces.pushed);
+        let is_fine = |particle: u32| match pushed {
+            PushedParticles::Fine(widest) => surface.face_widths()[particle as usize] <= widest,
+            PushedParticles::All | PushedParticles::None => false,
         };
         for index in first[0]..self.all.len() {
             let particle = self.all[index].particle;
@@ -169,7 +176,7 @@ impl Candidates {
         self.blocks[first[1]..].sort_unstable_by_key(|contact| contact.block);
         for (index, contact) in self.blocks.iter_mut().enumerate().skip(first[1]) {
             self.marks[contact.block as usize] = index as u32;
-            if widest_fine.is_some() {
+            if pushed != PushedParticles::All {
                 contact.points = 0;
             }
         }
@@ -180,7 +187,7 @@ impl Candidates {
             let contact = &mut self.blocks[index];
             contact.lanes |= 1 << lane;
             // Also one whose triangles are left out: those of its neighbours do not push it.
-            if some_fine.is_some() && !candidate.has_faces {
+            if matches!(pushed, PushedParticles::Fine(_)) && !candidate.has_faces {
                 contact.points |= 1 << lane;
             }
             contact.area[lane] = surface.area_of(candidate.particle as usize);
@@ -282,10 +289,15 @@ mod tests {
                     let found: Vec<u32> = (0..most).map(|_| random.below(count as u32)).collect();
                     let left_out = random.below(count as u32);
                     let is_left_out = |corners: &[u32; 3]| corners.contains(&left_out);
-                    let widest_fine = [None, Some(0.0), Some(0.1), Some(10.0)][tick / 2 % 4];
+                    let pushed = [
+                        PushedParticles::All,
+                        PushedParticles::None,
+                        PushedParticles::Fine(0.1),
+                        PushedParticles::Fine(10.0),
+                    ][tick / 2 % 4];
                     let faces = TestedFaces {
                         is_left_out,
-                        widest_fine,
+                        pushed,
                     };
                     let by_triangles = (tick % 2 == 0).then_some(&faces);
                     let ranges = candidates.add(&found, &surface, layout, by_triangles);
@@ -310,13 +322,14 @@ mod tests {
                         let own = surface.fans().of(candidate.particle);
                         let is_whole = by_triangles.is_some() && !meets.iter().any(is_left_out);
                         let width = surface.face_widths()[candidate.particle as usize];
-                        let is_fine = widest_fine.is_some_and(|widest| width <= widest);
+                        let is_fine =
+                            matches!(pushed, PushedParticles::Fine(widest) if width <= widest);
                         let is_whole = is_whole && !is_fine;
                         let is_point = contact.points & (1 << lane) != 0;
-                        let is_pushed = match (by_triangles, widest_fine) {
-                            (None, _) | (_, None) => true,
-                            (_, Some(0.0)) => false,
-                            (_, Some(_)) => own.faces.is_empty() || !is_whole,
+                        let is_pushed = match (by_triangles, pushed) {
+                            (None, _) | (_, PushedParticles::All) => true,
+                            (_, PushedParticles::None) => false,
+                            (_, PushedParticles::Fine(_)) => own.faces.is_empty() || !is_whole,
                         };
                         assert_eq!(is_point, is_pushed, "a point, or by its triangles");
                         let fan = candidate.fan(surface.fans());

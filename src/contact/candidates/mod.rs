@@ -6,7 +6,9 @@ mod narrow_phase;
 mod saved;
 mod touch;
 
-pub(crate) use blocks::{Candidate, Candidates, ContactBlock, Ranges, TestedFaces};
+pub(crate) use blocks::{
+    Candidate, Candidates, ContactBlock, PushedParticles, Ranges, TestedFaces,
+};
 pub(crate) use guard::Guard;
 pub use narrow_phase::{NarrowPhase, PARTICLES_FROM};
 pub(crate) use saved::SavedCandidates;

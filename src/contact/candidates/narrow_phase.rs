@@ -62,9 +62,10 @@ impl NarrowPhase {
         let spacing = surface.spacing().longest;
         if !collider.shape.has_edges() {
             let chosen = |spacing| self.chosen(collider.shape.radius(), collider.travel(), spacing);
-            let is_uniform = surface.as_grid().is_some() || chosen(0.0) == Self::Triangles;
+            // A fast collider is tested against triangles of any size.
+            let is_for_any_size = chosen(0.0) == Self::Triangles;
             return match chosen(spacing) {
-                Self::Triangles if !is_uniform => Self::Auto,
+                Self::Triangles if !is_for_any_size && surface.as_grid().is_none() => Self::Auto,
                 chosen => chosen,
             };
         }

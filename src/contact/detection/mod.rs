@@ -18,7 +18,8 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 use super::{
     bodies::{Before, Body, BodyChange, Carriers, Supports},
     candidates::{
-        Candidates, ContactPoint, ContactSettings, NarrowPhase, SavedCandidates, TestedFaces, Touch,
+        Candidates, ContactPoint, ContactSettings, NarrowPhase, PushedParticles, SavedCandidates,
+        TestedFaces, Touch,
     },
     colliders::{ColliderShape, MovingCollider},
     edges::ShapeCache,
@@ -206,15 +207,21 @@ impl Detection {
             return;
         }
         let is_embedded = self.is_embedded(id);
-        let widest_fine = match (narrow_phase, collider.shape.radius()) {
-            (NarrowPhase::Auto, Some(radius)) => NarrowPhase::widest_fine(radius),
-            _ => 0.0,
+        let pushed = match (narrow_phase, collider.shape.radius()) {
+            (_, None) => PushedParticles::All,
+            (NarrowPhase::Auto, Some(radius)) => {
+                PushedParticles::Fine(NarrowPhase::widest_fine(radius))
+            }
+            (_, Some(_)) => PushedParticles::None,
         };
-        let is_wide = |of: &u32| self.surface.face_widths()[*of as usize] > widest_fine;
+        let is_coarse = |of: &u32| match pushed {
+            PushedParticles::Fine(widest) => self.surface.face_widths()[*of as usize] > widest,
+            PushedParticles::All | PushedParticles::None => true,
+        };
         let narrow_phase = match narrow_phase {
             // The triangles of what is inside would be pushed the nearest way.
             _ if is_embedded => NarrowPhase::Particles,
-            NarrowPhase::Auto if found.iter().any(is_wide) => NarrowPhase::Triangles,
+            NarrowPhase::Auto if found.iter().any(is_coarse) => NarrowPhase::Triangles,
             NarrowPhase::Auto => NarrowPhase::Particles,
             other => other,
         };
@@ -235,7 +242,7 @@ impl Detection {
         let by_triangles = narrow_phase == NarrowPhase::Triangles;
         let faces = TestedFaces {
             is_left_out,
-            widest_fine: collider.shape.radius().map(|_| widest_fine),
+            pushed,
         };
         let faces = by_triangles.then_some(&faces);
         let of = self.candidates.add(found, &self.surface, layout, faces);
