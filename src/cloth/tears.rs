@@ -17,7 +17,8 @@ use super::surface::Surface;
 ///
 /// Torn cloth keeps its particles, with their places, velocities and total mass. New particles follow after them. A pinned or
 /// attached particle holds both sides of a tear through it. A torn grid is still solved as a grid, whose rows and columns
-/// are cut; its faces are those of a mesh. Its parts stay one cloth, which collides and sleeps as before. Scenes hold this component, and snapshots do, too.
+/// are cut; its faces are those of a mesh. Its parts stay one cloth. Each of them collides and
+/// sleeps by itself. Scenes hold this component, and snapshots do, too.
 ///
 /// To mend a cloth, empty it: `*tears = ClothTears::default()`. Edges that the cloth does not have are a fault,
 /// [`NoSuchEdge`](crate::cloth::ClothError::NoSuchEdge). So empty it when you give the entity another `Cloth`.

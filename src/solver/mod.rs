@@ -71,6 +71,7 @@ mod damping_reference;
 mod energy;
 mod envelope;
 mod forces;
+mod free_pieces;
 mod kernels;
 mod list;
 mod motion;
@@ -100,11 +101,12 @@ pub(crate) use bending::creases_of_torn;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 #[doc(hidden)]
+pub(crate) use free_pieces::FreePieces;
+#[doc(hidden)]
 pub use kernels::SimdLevel;
 pub(crate) use motion::MotionConstraints;
 pub(crate) use partitions::with_threads_awake;
-#[doc(hidden)]
-pub use rest::{Rest, RestRule};
+pub use rest::{Rest, RestLimits, RestRule};
 pub(crate) use seam::{Seam, SeamCloth, SeamPull};
 pub use settings::ClothSettings;
 pub use step::TimeOrder;

@@ -39,6 +39,35 @@ pub enum RestRule {
     Carries,
 }
 
+/// What counts as rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RestLimits {
+    /// Largest displacement of a particle (m).
+    pub reach: f32,
+    /// For how long it has to stay so near (s).
+    pub patience: f32,
+}
+
+impl RestRule {
+    /// The limits for cloth that measures `diagonal` (m) at rest, under an `acceleration` (m/s²).
+    pub fn limits(self, diagonal: f32, acceleration: f32) -> RestLimits {
+        let patience = match self {
+            Self::Layers => PATIENCE_OF_LAYERS,
+            _ if acceleration > 0.0 => HALF_SWING * (diagonal / acceleration).sqrt(),
+            _ => WITHOUT_GRAVITY,
+        };
+        let reach = match self {
+            Self::Layers => REACH_OF_LAYERS,
+            Self::Carries => (REACH_OF_CARRIERS * diagonal).min(LARGEST_REACH),
+            Self::Free => (REACH * diagonal).min(LARGEST_REACH),
+        };
+        RestLimits {
+            reach,
+            patience: patience.clamp(PATIENCE[0], PATIENCE[1]),
+        }
+    }
+}
+
 /// Detects rest as an observer would see it. A cloth is at rest once no particle has moved by more than a thousandth of
 /// the cloth's diagonal, capped at 5 mm, for half a swing. That is the half period of a hanging sheet as long as the
 /// diagonal (1.3 s for 2.3 m on Earth), from 0.5 to 20 s. Speeds do not count: a cloth that trembles in place is at
@@ -70,16 +99,7 @@ impl Rest {
         (diagonal, acceleration): (f32, f32),
         rule: RestRule,
     ) {
-        let patience = match rule {
-            RestRule::Layers => PATIENCE_OF_LAYERS,
-            _ if acceleration > 0.0 => HALF_SWING * (diagonal / acceleration).sqrt(),
-            _ => WITHOUT_GRAVITY,
-        };
-        let reach = match rule {
-            RestRule::Layers => REACH_OF_LAYERS,
-            RestRule::Carries => (REACH_OF_CARRIERS * diagonal).min(LARGEST_REACH),
-            RestRule::Free => (REACH * diagonal).min(LARGEST_REACH),
-        };
+        let RestLimits { reach, patience } = rule.limits(diagonal, acceleration);
         if self.wait > 0.0 {
             self.wait -= seconds;
             if self.wait <= 0.0 {
@@ -94,7 +114,7 @@ impl Rest {
             return;
         }
         self.calm += seconds;
-        if self.calm >= patience.clamp(PATIENCE[0], PATIENCE[1]) {
+        if self.calm >= patience {
             self.is_asleep = true;
             self.origin.copy_from(particles);
         }

@@ -40,6 +40,7 @@ mod order;
 mod origin;
 mod parents;
 mod picking;
+mod pieces;
 mod pole;
 mod push_back;
 mod push_rapier;

@@ -197,5 +197,5 @@ fn attach(
     }
     state.attachments.given = wanted.to_vec();
     built.forget_tethers();
-    state.rest.disturb();
+    state.wake();
 }

@@ -72,7 +72,7 @@ pub(crate) fn build(
     state.inputs.opened = built.tears().edges().len();
     state.inputs.as_mesh = built.is_as_mesh();
     if !resumes {
-        state.rest.disturb();
+        state.wake();
     }
     Ok(build)
 }

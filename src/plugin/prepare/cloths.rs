@@ -82,7 +82,7 @@ pub(crate) fn prepare_cloths(
         if outcome.is_err() {
             skip(&mut cloth);
             if !cloth.state.resumes {
-                cloth.state.rest.disturb();
+                cloth.state.wake();
             }
         }
         if cloth.game.teleport.is_some() && outcome.is_ok() {
@@ -171,7 +171,7 @@ fn prepare(
         state.stretch = built.solver.measure(&cloth.particles);
         built.refresh_masses(&cloth.particles);
         cloth.stats.stretch = state.stretch;
-        state.rest.disturb();
+        state.wake();
     }
     built.tether(
         inputs.settings.tethers,
@@ -318,7 +318,7 @@ fn apply_motion(
         *cloth.frame = *frame;
     } else if moves && is_moved {
         carry(particles, new_from_old, &mut scratch.pins);
-        state.rest.disturb();
+        state.wake();
         *cloth.frame = *frame;
     }
     if moves || build != Build::Kept || scratch.teleports {

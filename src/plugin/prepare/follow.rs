@@ -47,9 +47,9 @@ pub(super) fn follow_grain(
 /// Takes over the springs of the same particles.
 fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothState) {
     built.shared = shared;
-    let tethers = built.solver.take_tethers();
-    built.solver = built.shared.solver.clone();
-    built.solver.set_tethers(tethers);
+    let mut solver = built.shared.solver.clone();
+    solver.take_pins_of(&mut built.solver);
+    built.solver = solver;
     // The stretch that bounds rely on is measured over other springs now.
     state.inputs.written = None;
 }
@@ -127,7 +127,7 @@ pub(super) fn follow_masses(
     if are_others_pinned || gives_otherwise || !is_as_stiff {
         built.forget_tethers();
     }
-    state.rest.disturb();
+    state.wake();
     Ok(is_sprung_otherwise)
 }
 

@@ -106,6 +106,6 @@ pub(crate) fn thaw(
     if state.attachments.first_target.is_some() {
         state.attachments.first_target = Some(frozen.last);
     }
-    state.rest.disturb();
+    state.wake();
     true
 }

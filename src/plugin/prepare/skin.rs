@@ -130,7 +130,7 @@ fn renew_limits(
         state.pose = Pose::default();
     }
     if !state.resumes {
-        state.rest.disturb();
+        state.wake();
     }
     Ok(())
 }
@@ -186,7 +186,7 @@ pub(crate) fn move_with_pose(
     let (constraints, motions) = (&mut scratch.constraints, &mut scratch.pins);
     follow_pose([from, to], jumps, particles, built, constraints, motions);
     if constraints.travel() > 0.0 {
-        state.rest.disturb();
+        state.wake();
     }
 }
 

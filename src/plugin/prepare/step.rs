@@ -34,8 +34,10 @@ pub(super) fn see_whether_it_rests(
         .air
         .is_still(wind.as_ref(), pressure, field, ball);
     state.inputs.air.renew(wind, pressure.copied(), field, ball);
-    if state.inputs.known != known || !is_still || !scratch.pins.is_empty() || !settings.sleeps {
+    if state.inputs.known != known || !is_still || !settings.sleeps {
         state.inputs.known = known;
+        state.wake();
+    } else if !scratch.pins.is_empty() {
         state.rest.disturb();
     } else if !state.rest.is_asleep() {
         let scale = (built.surface().diagonal(), acceleration.length());

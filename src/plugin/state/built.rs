@@ -15,7 +15,7 @@ use crate::{
         Springs, Surface,
     },
     hierarchy::QuadTree,
-    solver::{Solver, Tethers, material_stretch},
+    solver::{FreePieces, Solver, Tethers, material_stretch},
 };
 
 /// A cloth's surface, springs, tree of bounding volumes and solver. The plugin builds them from the cloth's other
@@ -291,6 +291,8 @@ impl ClothBuilt {
             Tethers::default()
         };
         self.solver.set_tethers(tethers);
+        let free_pieces = FreePieces::new(surface, particles);
+        self.solver.set_free_pieces(free_pieces);
         true
     }
 }

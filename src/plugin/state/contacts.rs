@@ -56,6 +56,14 @@ pub struct ClothContacts {
     #[entities]
     pub(crate) now: Vec<ClothContact>,
     points: Vec<ContactPoint>,
+    /// Those of the tick before, while they are renewed.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    #[entities]
+    #[reflect(ignore)]
+    before: Vec<ClothContact>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    #[reflect(ignore)]
+    points_before: Vec<ContactPoint>,
     /// Those reported, each with the largest number of particles and the deepest penetration since the touch began.
     #[entities]
     pub(crate) reported: Vec<ClothContact>,
@@ -89,13 +97,17 @@ impl ClothContacts {
         self.points.clear();
     }
 
-    /// Takes the contacts of a new tick, found in a frame that is turned by `rotation`; those of no particle are none.
+    /// Takes the contacts of a new tick, found in a frame that is turned by `rotation`; those of no particle are none. Particles that
+    /// sleep keep theirs.
     pub(crate) fn renew(
         &mut self,
         near: &[(Entity, MovingCollider)],
         detection: &Detection,
         rotation: Quat,
+        sleeps: impl Fn(u32) -> bool,
     ) {
+        std::mem::swap(&mut self.now, &mut self.before);
+        std::mem::swap(&mut self.points, &mut self.points_before);
         self.now.clear();
         self.points.clear();
         for touch in detection.touches() {
@@ -104,7 +116,18 @@ impl ClothContacts {
                 depth: point.depth.min(f32::MAX),
                 ..point
             });
-            self.points.extend(points);
+            (self.points).extend(points.filter(|point| !sleeps(point.particle)));
+            let collider = near.get(touch.id).map(|(collider, _)| *collider);
+            let mut before = self.before.iter();
+            let is_first = self.now.iter().all(|now| Some(now.collider) != collider);
+            let before = before.find(|before| is_first && Some(before.collider) == collider);
+            let known = before.and_then(|before| {
+                let [first, end] = before.points;
+                self.points_before.get(first..end)
+            });
+            let known = known.unwrap_or_default();
+            let sleeping = known.iter().filter(|point| sleeps(point.particle));
+            self.points.extend(sleeping.copied());
             let particles = self.points[first..]
                 .iter()
                 .filter(|point| point.depth > 0.0)

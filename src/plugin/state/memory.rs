@@ -10,7 +10,8 @@ use bevy::{
 };
 
 use super::{
-    air::AirState, excess::Excess, inputs::Inputs, lod::LodState, pose::Pose, resting::RestsOn,
+    air::AirState, excess::Excess, inputs::Inputs, lod::LodState, pieces::Pieces, pose::Pose,
+    resting::RestsOn,
 };
 use crate::{
     cloth::ClothParticles,
@@ -33,6 +34,8 @@ pub struct ClothState {
     /// Control of the coming tick's sub-steps.
     pub(crate) control: Control,
     pub(crate) rest: Rest,
+    /// Rest of the pieces of a torn cloth.
+    pub(crate) pieces: Pieces,
     /// Number of sub-steps that its layers want; 0 if none touched in the last tick.
     pub(crate) layer_substeps: u32,
     /// Stretch at the current positions: `RestShape` relies on it.
@@ -128,6 +131,7 @@ impl ClothState {
             lod,
             control,
             ref rest,
+            ref pieces,
             layer_substeps,
             stretch,
             largest_speed,
@@ -142,6 +146,7 @@ impl ClothState {
             ref creases,
         } = *other;
         self.rest.copy_from(rest);
+        self.pieces.copy_from(pieces);
         self.inputs.copy_from(inputs);
         self.attachments.copy_from(attachments);
         self.pose.copy_from(pose);
@@ -152,6 +157,12 @@ impl ClothState {
         (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
         (self.resumes, self.reported) = (resumes, reported);
         self.creases.clone_from(creases);
+    }
+
+    /// Wakes the cloth, and all its pieces.
+    pub(crate) fn wake(&mut self) {
+        self.rest.disturb();
+        self.pieces.wake();
     }
 
     /// Takes over the creases as a tick ends.
@@ -170,6 +181,7 @@ impl ClothState {
         };
         let blocks = particles.blocks().len();
         self.rest.is_valid()
+            && self.pieces.is_valid_for(len)
             && self.creases.iter().all(|crease| crease.is_finite())
             && is_of_all(self.pose.places.len())
             && is_of_all(self.pose.normals.len())
@@ -203,6 +215,7 @@ impl MapEntities for ClothState {
         for known in &mut self.rests_on {
             known.map_entities(mapper);
         }
+        self.pieces.map_entities(mapper);
         self.inputs.air.map_entities(mapper);
     }
 }

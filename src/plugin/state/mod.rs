@@ -14,6 +14,7 @@ mod lod;
 mod memory;
 mod notices;
 mod parts;
+mod pieces;
 mod pose;
 mod recipe;
 mod resting;

@@ -34,6 +34,8 @@ pub struct ClothScratch {
     pub(crate) contact_settings: ContactSettings,
     /// Pinned particles that the frame or a target carries along.
     pub(crate) pins: Vec<PinMotion>,
+    /// Particles of pieces that sleep in the tick, which are held as if pinned, and their inverse masses (1/kg).
+    pub(crate) held: Vec<(u32, f32)>,
     /// Places of the attachments' targets, in their order.
     pub(crate) targets: Vec<Affine3A>,
     /// The pose as the tick begins, in the frame that it ends with.

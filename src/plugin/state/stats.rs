@@ -62,6 +62,8 @@ pub struct ClothStats {
     pub substeps: u32,
     /// Current level of detail of the cloth.
     pub level: ClothLodLevel,
+    /// Free particles of pieces that sleep, of a torn cloth that does not sleep as a whole.
+    pub sleeping_particles: usize,
     /// Whether the cloth sleeps.
     pub is_asleep: bool,
     /// The first limit that the cloth exceeded as its last tick ended, if any. Beyond it, the cloth is not simulated

@@ -66,8 +66,12 @@ impl IntegrateQueryItem<'_, '_> {
         self.remember_contacts();
         self.push_bodies();
         let rotation = self.frame.isometry().rotation;
-        self.contacts
-            .renew(&self.scratch.near, &self.scratch.detection, rotation);
+        self.contacts.renew(
+            &self.scratch.near,
+            &self.scratch.detection,
+            rotation,
+            |of| self.state.pieces.sleeps(of),
+        );
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
         self.stats.air_impulse = rotation * self.built.solver.air_impulse();

@@ -124,8 +124,11 @@ impl GridSolver {
 
     /// The angular frequency of the fastest ripples (rad/s), in which neighbours swing against each other: ω² = 4 Σ F/(m l) over
     /// a chain across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
-    /// membrane has it everywhere, and what hangs by a corner is not a membrane.
-    fn ripple(&self, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
+    /// membrane has it everywhere, and what hangs by a corner is not a membrane. 0 if nothing is measured.
+    fn ripple_if(&self, measures: bool, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
+        if !measures {
+            return 0.0;
+        }
         let mut strips = if self.bands.is_by_row() {
             // Where springs differ, the longest need not pull most.
             self.bands
@@ -199,19 +202,19 @@ impl GridSolver {
         if partitions > 1 {
             return self.end_in_partitions(blocks, motion, partitions);
         }
-        let kernels = motion.kernels;
+        let (kernels, measures) = (motion.kernels, motion.measures);
         motion.tethers.pull(motion.anchors, blocks, 0, kernels);
         let mut moved = [0.0; LANES];
         (kernels.commit)(blocks, &mut moved);
-        let given = self.given_if(motion.measures, kernels);
-        let stretch = motion.measures.then(|| Stretch {
+        let given = self.given_if(measures, kernels);
+        let stretch = measures.then(|| Stretch {
             material: self.bands.material(&given),
             ..self.measure(blocks, kernels)
         });
         SolvedSubstep {
             moved,
             stretch,
-            ripple: self.ripple(blocks, &given),
+            ripple: self.ripple_if(measures, blocks, &given),
         }
     }
 
@@ -261,7 +264,7 @@ impl GridSolver {
         SolvedSubstep {
             moved: farthest(&found),
             stretch,
-            ripple: self.ripple(blocks, &given),
+            ripple: self.ripple_if(measures, blocks, &given),
         }
     }
 

@@ -37,6 +37,7 @@ use std::array;
 use super::{
     bending::Bending,
     damping_reference::DampingReference,
+    free_pieces::FreePieces,
     kernels::{ElasticGrid, Force, Kernels, Kick, LinearizedDrag},
     partitions::{MAX_PARTITIONS, in_partitions, take},
     step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, existing},
@@ -178,6 +179,7 @@ impl Forces {
         pins: &[PinMotion],
         bending: Option<(&mut Bending, f32)>,
         linearized: Option<&[LinearizedDrag]>,
+        free_pieces: &mut FreePieces,
         kernels: &Kernels,
     ) -> Option<SubStep> {
         let count = step.substeps.max(1);
@@ -209,6 +211,11 @@ impl Forces {
             }
         }
         let blocks = particles.blocks_mut();
+        if kept < 1.0 {
+            free_pieces.measure(blocks);
+            let lost = (1.0 - kept) / kept;
+            free_pieces.shift(blocks, |own| lost * (own - displacement));
+        }
         // Before the kick, which keeps a part of it.
         self.list.push(blocks, weight / kept);
         if let Some((bending, bends_for)) = bending

@@ -28,6 +28,8 @@ pub(crate) struct Prediction {
     two: f32,
     /// c a Δt², and what damping gives back (m).
     pull: [f32; 3],
+    /// The parts of the carrier's displacement and gain that damping gives back.
+    lost: [f32; 2],
 }
 
 impl Prediction {
@@ -56,7 +58,14 @@ impl Prediction {
             one: one as f32,
             two: two as f32,
             pull: (pull + lost * displacement + lost_gain * gain).to_array(),
+            lost: [lost, lost_gain],
         }
+    }
+
+    /// What damping gives back to what moves by so much more than the carrier in the sub-step before, and gains as much more (m).
+    pub fn given_back(&self, [displacement, gain]: [Vec3; 2]) -> Vec3 {
+        let [lost, lost_gain] = self.lost;
+        lost * displacement + lost_gain * gain
     }
 }
 
@@ -96,6 +105,7 @@ pub(crate) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
         one,
         two,
         pull,
+        ..
     } = *prediction;
     for (block, Earlier(earlier)) in row.iter_mut().zip(past) {
         let view = block.view_mut();
@@ -164,6 +174,7 @@ pub(crate) fn predict_in_air(
         one,
         two,
         pull,
+        ..
     } = *prediction;
     let AirStep {
         weight,

@@ -12,6 +12,7 @@ use super::{
     bending::{Bending, ClothCreasing},
     chains::GridSolver,
     forces::Forces,
+    free_pieces::FreePieces,
     kernels::SimdLevel,
     list::ListSolver,
     partitions::with_threads_awake,
@@ -50,6 +51,7 @@ pub struct Solver {
     bending: Option<Bending>,
     air: Option<Box<Airflow>>,
     tethers: Tethers,
+    free_pieces: FreePieces,
     anchors: Anchors,
     /// Decay time of damping along springs (s).
     retardation: f32,
@@ -126,6 +128,7 @@ impl Solver {
             bending: None,
             air: None,
             tethers: Tethers::default(),
+            free_pieces: FreePieces::default(),
             anchors: Anchors::default(),
             retardation: 0.0,
             partitions: 1,
@@ -227,9 +230,15 @@ impl Solver {
         self.tethers = tethers;
     }
 
-    /// Takes its tethers, for another solver of the same particles.
-    pub(crate) fn take_tethers(&mut self) -> Tethers {
-        std::mem::take(&mut self.tethers)
+    /// Sets the pieces that no pin holds.
+    pub(crate) fn set_free_pieces(&mut self, free_pieces: FreePieces) {
+        self.free_pieces = free_pieces;
+    }
+
+    /// Takes over the tethers and free pieces of another solver of the same particles.
+    pub(crate) fn take_pins_of(&mut self, other: &mut Self) {
+        self.tethers = std::mem::take(&mut other.tethers);
+        self.free_pieces = std::mem::take(&mut other.free_pieces);
     }
 
     /// The tethers.

@@ -1,0 +1,74 @@
+//! Pieces of a cloth without pins, which fall freely: damping acts relative to the centre of mass of each.
+
+use bevy::math::{DVec3, Vec3};
+
+use crate::cloth::{Block, ClothParticles, Slot, Surface};
+
+/// The pieces of a cloth in several pieces that no pin holds. None of a cloth of one piece.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct FreePieces(Vec<FreePiece>);
+
+#[derive(Debug, Default, Clone)]
+struct FreePiece {
+    slots: Vec<Slot>,
+    /// Displacement of its centre of mass in the sub-step before (m); `None` if all of it is held.
+    displacement: Option<Vec3>,
+}
+
+impl FreePieces {
+    /// Those of a surface with these particles.
+    pub fn new(surface: &Surface, particles: &ClothParticles) -> Self {
+        let of_particle = match surface.pieces() {
+            0 | 1 => Vec::new(),
+            _ => surface.graph().pieces_of(),
+        };
+        let count = of_particle
+            .iter()
+            .max()
+            .map_or(0, |last| *last as usize + 1);
+        let mut pieces = vec![FreePiece::default(); count];
+        let mut is_held = vec![false; count];
+        for (index, (piece, slot)) in of_particle.iter().zip(surface.layout().slots()).enumerate() {
+            pieces[*piece as usize].slots.push(slot);
+            is_held[*piece as usize] |= particles.is_pinned(index) == Some(true);
+        }
+        let mut is_held = is_held.into_iter();
+        pieces.retain(|_| is_held.next() == Some(false));
+        Self(pieces)
+    }
+
+    /// Measures how the centres of mass have moved in the last sub-step.
+    pub fn measure(&mut self, blocks: &[Block]) {
+        for piece in &mut self.0 {
+            let (mut mass, mut moment) = (0.0, DVec3::ZERO);
+            for slot in &piece.slots {
+                let block = &blocks[slot.block];
+                let inverse_mass = f64::from(block.inverse_mass(slot.lane));
+                if inverse_mass > 0.0 {
+                    mass += 1.0 / inverse_mass;
+                    moment += block.displacement(slot.lane).as_dvec3() / inverse_mass;
+                }
+            }
+            piece.displacement = (mass > 0.0).then(|| (moment / mass).as_vec3());
+        }
+    }
+
+    /// Moves the free particles of each piece on by what `more` makes of the displacement of its centre of mass (m).
+    pub fn shift(&self, blocks: &mut [Block], more: impl Fn(Vec3) -> Vec3) {
+        for FreePiece {
+            slots,
+            displacement,
+        } in &self.0
+        {
+            let Some(more) = displacement.map(&more) else {
+                continue;
+            };
+            for slot in slots {
+                let block = &mut blocks[slot.block];
+                if block.inverse_mass(slot.lane) > 0.0 {
+                    block.set_displacement(slot.lane, block.displacement(slot.lane) + more);
+                }
+            }
+        }
+    }
+}
