@@ -39,7 +39,7 @@ pub enum RestRule {
     Carries,
 }
 
-/// What counts as rest.
+/// The limits of a motion that counts as rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestLimits {
     /// Largest displacement of a particle (m).

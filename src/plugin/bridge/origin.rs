@@ -126,10 +126,8 @@ fn shift(
         state.lod.frozen = state.lod.frozen.map(|was| was.shifted(shift, carrier));
         state.inputs.air.shift(shift, zone);
         let rounding = 2.0 * shift.rounding(before.isometry().translation);
-        state
-            .rests_on
-            .iter_mut()
-            .for_each(|on| on.add_slack(rounding));
+        let colliders = state.resting.colliders_mut();
+        colliders.for_each(|on| on.add_slack(rounding));
         #[cfg(feature = "mesh")]
         if let Some(drawing) = &mut cloth.drawing {
             let target = |entity| place(entity).map(|place| place.affine());

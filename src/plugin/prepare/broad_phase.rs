@@ -64,7 +64,7 @@ pub(crate) fn update_bounds(
         if let Some(from) = &built.from {
             scratch.detection.set_grips(&from.factors.grips);
         }
-        state.rests_on.clear();
+        state.resting.on.clear();
         if is_stale {
             search.query.clear();
             is_stale = false;
@@ -75,7 +75,7 @@ pub(crate) fn update_bounds(
         radius: (root.radius() + around) * (1.0 + 1.0e-5) + centre.length() * 1.0e-5,
         takes_part: true,
         // It keeps the colliders that it fell asleep on.
-        has_sleeping_contacts: is_asleep && !state.rests_on.is_empty(),
+        has_sleeping_contacts: is_asleep && !state.resting.on.is_empty(),
         is_searched: false,
         is_stale,
     };

@@ -38,7 +38,7 @@ impl NeighbourItem<'_, '_> {
     /// Wakes a cloth that was prepared as a sleeping one.
     pub fn wake(&mut self) {
         self.state.rest.disturb();
-        self.state.rests_on.clear();
+        self.state.resting.on.clear();
         self.bounds.has_sleeping_contacts = false;
         let scratch = &mut *self.scratch;
         scratch.near.clear();

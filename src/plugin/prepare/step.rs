@@ -41,7 +41,7 @@ pub(super) fn see_whether_it_rests(
         state.rest.disturb();
     } else if !state.rest.is_asleep() {
         let scale = (built.surface().diagonal(), acceleration.length());
-        let rule = if state.rests_on.iter().any(RestsOn::is_body) {
+        let rule = if state.resting.on.iter().any(RestsOn::is_body) {
             RestRule::Carries
         } else if inputs.self_collision.is_some() && state.layer_substeps > 0 {
             RestRule::Layers

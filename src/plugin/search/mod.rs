@@ -243,7 +243,7 @@ impl SearchQueryItem<'_, '_> {
             let moving = motion.and_then(|motion| motion.seen_from(self.frame, None));
             moving.is_some_and(|moving| known.still_rests(&moving, far))
         };
-        if !self.state.rests_on.iter_mut().all(rests_still) {
+        if !self.state.resting.on.iter_mut().all(rests_still) {
             return false;
         }
         let ClothScratch {
@@ -260,7 +260,8 @@ impl SearchQueryItem<'_, '_> {
         for (entity, motion) in colliders.near(centre, radius, layers) {
             if self
                 .state
-                .rests_on
+                .resting
+                .on
                 .iter()
                 .any(|known| known.entity == entity)
             {

@@ -10,8 +10,7 @@ use bevy::{
 };
 
 use super::{
-    air::AirState, excess::Excess, inputs::Inputs, lod::LodState, pieces::Pieces, pose::Pose,
-    resting::RestsOn,
+    air::AirState, excess::Excess, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose,
 };
 use crate::{
     cloth::ClothParticles,
@@ -34,8 +33,6 @@ pub struct ClothState {
     /// Control of the coming tick's sub-steps.
     pub(crate) control: Control,
     pub(crate) rest: Rest,
-    /// Rest of the pieces of a torn cloth.
-    pub(crate) pieces: Pieces,
     /// Number of sub-steps that its layers want; 0 if none touched in the last tick.
     pub(crate) layer_substeps: u32,
     /// Stretch at the current positions: `RestShape` relies on it.
@@ -46,8 +43,8 @@ pub struct ClothState {
     pub(crate) attachments: AttachmentMemory,
     /// The pose that it follows, as the last tick ended.
     pub(crate) pose: Pose,
-    /// The colliders that it touched as it fell asleep, each with its place then.
-    pub(crate) rests_on: Vec<RestsOn>,
+    /// What it rests on, and its pieces.
+    pub(crate) resting: Resting,
     /// The particles that carried bodies as the last tick ended.
     pub(crate) carriers: Vec<(Entity, Carrier)>,
     /// The largest gravity so far, as 9.81 or a doubling of that (m/s²): tethers are made for it.
@@ -131,14 +128,13 @@ impl ClothState {
             lod,
             control,
             ref rest,
-            ref pieces,
             layer_substeps,
             stretch,
             largest_speed,
             ref inputs,
             ref attachments,
             ref pose,
-            ref rests_on,
+            ref resting,
             ref carriers,
             largest_gravity,
             resumes,
@@ -146,11 +142,10 @@ impl ClothState {
             ref creases,
         } = *other;
         self.rest.copy_from(rest);
-        self.pieces.copy_from(pieces);
         self.inputs.copy_from(inputs);
         self.attachments.copy_from(attachments);
         self.pose.copy_from(pose);
-        self.rests_on.clone_from(rests_on);
+        self.resting.copy_from(resting);
         self.carriers.clone_from(carriers);
         (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
         (self.layer_substeps, self.stretch) = (layer_substeps, stretch);
@@ -162,7 +157,7 @@ impl ClothState {
     /// Wakes the cloth, and all its pieces.
     pub(crate) fn wake(&mut self) {
         self.rest.disturb();
-        self.pieces.wake();
+        self.resting.pieces.wake();
     }
 
     /// Takes over the creases as a tick ends.
@@ -181,7 +176,7 @@ impl ClothState {
         };
         let blocks = particles.blocks().len();
         self.rest.is_valid()
-            && self.pieces.is_valid_for(len)
+            && self.resting.pieces.is_valid_for(len)
             && self.creases.iter().all(|crease| crease.is_finite())
             && is_of_all(self.pose.places.len())
             && is_of_all(self.pose.normals.len())
@@ -212,10 +207,9 @@ impl MapEntities for ClothState {
         for attachment in &mut self.attachments.given {
             attachment.map_entities(mapper);
         }
-        for known in &mut self.rests_on {
+        for known in self.resting.colliders_mut() {
             known.map_entities(mapper);
         }
-        self.pieces.map_entities(mapper);
         self.inputs.air.map_entities(mapper);
     }
 }

@@ -1,9 +1,6 @@
 //! Pieces of a torn cloth, which fall asleep one by one.
 
-use bevy::{
-    ecs::entity::{Entity, EntityMapper, MapEntities},
-    math::Vec3,
-};
+use bevy::{ecs::entity::Entity, math::Vec3};
 
 use super::resting::RestsOn;
 use crate::{
@@ -11,6 +8,28 @@ use crate::{
     contact::MovingCollider,
     solver::{PinMotion, RestLimits},
 };
+
+/// What a cloth rests on, and which of its pieces sleep.
+#[derive(Debug, Default, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Resting {
+    /// The colliders that it touched as it fell asleep, each with its place then.
+    pub on: Vec<RestsOn>,
+    pub pieces: Pieces,
+}
+
+impl Resting {
+    /// Copies `other` into its own memory.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.on.clone_from(&other.on);
+        self.pieces.copy_from(&other.pieces);
+    }
+
+    /// The colliders that it or one of its pieces rests on.
+    pub fn colliders_mut(&mut self) -> impl Iterator<Item = &mut RestsOn> {
+        self.on.iter_mut().chain(self.pieces.colliders_mut())
+    }
+}
 
 /// The pieces of a torn cloth. One that has come to rest sleeps while others move.
 #[derive(Debug, Default, Clone)]
@@ -61,6 +80,11 @@ impl Pieces {
             || self.of_particle.len() == particles
                 && self.origin.len() == particles
                 && self.of_particle.iter().all(is_known)
+    }
+
+    /// The colliders that its pieces sleep on.
+    pub fn colliders_mut(&mut self) -> impl Iterator<Item = &mut RestsOn> {
+        self.all.iter_mut().flat_map(|piece| &mut piece.rests_on)
     }
 
     /// Whether a particle's piece sleeps.
@@ -186,14 +210,6 @@ impl Piece {
             }
         }
         count == self.rests_on.len()
-    }
-}
-
-impl MapEntities for Pieces {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        for known in self.all.iter_mut().flat_map(|piece| &mut piece.rests_on) {
-            known.map_entities(mapper);
-        }
     }
 }
 

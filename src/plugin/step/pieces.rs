@@ -52,7 +52,7 @@ impl PieceQueryItem<'_, '_> {
         let has_pieces = surface.is_torn() && surface.pieces() > 1;
         // Other cloths in an island move it, or are sewn to it.
         if !has_pieces || scratch.is_in_island {
-            state.pieces.wake();
+            state.resting.pieces.wake();
             return;
         }
         let step = scratch.step.filter(|step| step.seconds > 0.0);
@@ -70,10 +70,10 @@ impl PieceQueryItem<'_, '_> {
         let limits = rule.limits(surface.diagonal(), step.acceleration.length());
         let RestLimits { patience, .. } = limits;
         let (particles, pins) = (&*self.particles, &scratch.pins);
-        (state.pieces).observe(surface, particles, pins, limits, step.seconds);
+        (state.resting.pieces).observe(surface, particles, pins, limits, step.seconds);
         let touching = layers.map(|of| of.thickness + 2.0 * scratch.reach);
         let reach = scratch.contact_settings.particle_radius + surface.spacing().longest;
-        (state.pieces).fall_asleep(patience, touching, |piece| {
+        (state.resting.pieces).fall_asleep(patience, touching, |piece| {
             piece.lies_still(&scratch.near, reach)
         });
     }
@@ -85,7 +85,7 @@ impl PieceQueryItem<'_, '_> {
         let particles = self.particles.bypass_change_detection();
         let layout = particles.layout();
         let held = &mut self.scratch.held;
-        for particle in self.state.pieces.asleep() {
+        for particle in self.state.resting.pieces.asleep() {
             let slot = layout.slot_of(particle as usize);
             let block = &mut particles.blocks_mut()[slot.block];
             let inverse_mass = block.inverse_mass(slot.lane);

@@ -50,7 +50,7 @@ pub(crate) fn push_bodies(
     for (cloth, order, scratch, state) in &cloths {
         // One that stands still by its level of detail is not prepared.
         if state.rest.is_asleep() && scratch.step.is_some() {
-            let bodies = state.rests_on.iter().filter(|on| on.is_body());
+            let bodies = state.resting.on.iter().filter(|on| on.is_body());
             held.extend(bodies.map(|on| on.entity));
         }
         let cloth = (order.copied().unwrap_or_default(), cloth);

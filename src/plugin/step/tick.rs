@@ -70,7 +70,7 @@ impl IntegrateQueryItem<'_, '_> {
             &self.scratch.near,
             &self.scratch.detection,
             rotation,
-            |of| self.state.pieces.sleeps(of),
+            |of| self.state.resting.pieces.sleeps(of),
         );
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
@@ -90,8 +90,8 @@ impl IntegrateQueryItem<'_, '_> {
         // A body's own path, without the pushes of the tick.
         let known = touches.filter_map(|touch| near.get(touch.id));
         let known = known.map(|(entity, collider)| RestsOn::new(*entity, collider));
-        self.state.rests_on.clear();
-        self.state.rests_on.extend(known);
+        self.state.resting.on.clear();
+        self.state.resting.on.extend(known);
     }
 
     /// Notes the cloth's pushes on bodies. While it pushes one that moves, it does not rest.

@@ -62,7 +62,8 @@ impl Prediction {
         }
     }
 
-    /// What damping gives back to what moves by so much more than the carrier in the sub-step before, and gains as much more (m).
+    /// Damping gives this back (m) to particles that have moved by so much more than the carrier in the sub-step before, and gain so much
+    /// more (m).
     pub fn given_back(&self, [displacement, gain]: [Vec3; 2]) -> Vec3 {
         let [lost, lost_gain] = self.lost;
         lost * displacement + lost_gain * gain

@@ -239,10 +239,7 @@ impl Solver {
             air.before_substep(tick.next, particles, &kernels);
             tick.damping_reference.blow(air.memory().force);
         }
-        let is_damped = step.damping > 0.0;
-        if is_damped {
-            self.free_pieces.measure(particles.blocks());
-        }
+        self.free_pieces.measure(particles.blocks());
         let frame = tick.damping_reference.follow(particles.blocks());
         let prediction = Prediction::new(kind, kept, pull, frame);
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
@@ -278,12 +275,10 @@ impl Solver {
                 }
             }
         }
-        if is_damped {
-            let gain = step.acceleration * dt * dt;
-            (self.free_pieces).shift(particles.blocks_mut(), |displacement| {
-                prediction.given_back([displacement - frame[0], gain - frame[1]])
-            });
-        }
+        let gain = step.acceleration * dt * dt;
+        (self.free_pieces).shift(particles.blocks_mut(), |displacement| {
+            prediction.given_back([displacement - frame[0], gain - frame[1]])
+        });
     }
 
     /// The next sub-step of a tick of forces. The call after the last one ends the tick.
