@@ -25,7 +25,13 @@ impl StiffnessFactors {
 
     /// The factor of a face's flexural rigidity.
     pub fn of_face(&self, face: [u32; 3]) -> f32 {
-        let rigidity = |corner: u32| self.bending.get(corner as usize).copied().unwrap_or(1.0);
-        face.map(rigidity).into_iter().sum::<f32>() / 3.0
+        self.mean_bending(&face)
+    }
+
+    /// The mean factor of the flexural rigidity at some particles.
+    pub fn mean_bending(&self, particles: &[u32]) -> f32 {
+        let of = |particle: &u32| self.bending.get(*particle as usize).copied();
+        let sum: f32 = particles.iter().map(|at| of(at).unwrap_or(1.0)).sum();
+        sum / particles.len() as f32
     }
 }

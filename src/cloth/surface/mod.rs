@@ -55,6 +55,7 @@ pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
+pub(crate) use torn::GridStencil;
 pub(crate) use triangles::JointWeights;
 #[cfg(feature = "mesh")]
 pub(crate) use weld::same_places;

@@ -26,6 +26,7 @@ mod schedule;
 #[cfg(test)]
 mod tests;
 mod torn_creases;
+mod torn_plate;
 
 use std::sync::Arc;
 
@@ -37,6 +38,7 @@ use mesh::MeshBending;
 use mesh_matrix::{KnownMatrix, MeshMatrix};
 pub(super) use schedule::BendingSchedule;
 pub(crate) use torn_creases::creases_of_torn;
+use torn_plate::{TornBending, TornPlate};
 
 /// A surface's resistance to bending.
 #[derive(Debug, Clone)]
@@ -48,7 +50,33 @@ pub struct Bending {
 #[derive(Debug, Clone)]
 enum Kind {
     Grid(Box<GridBending>),
+    Torn(Box<TornBending>),
     Mesh(MeshBending),
+}
+
+impl Kind {
+    /// The bending of the mesh of its faces, of all but a whole grid.
+    fn mesh(&self) -> Option<&MeshBending> {
+        match self {
+            Self::Grid(_) => None,
+            Self::Torn(torn) => Some(&torn.mesh),
+            Self::Mesh(mesh) => Some(mesh),
+        }
+    }
+
+    fn mesh_mut(&mut self) -> Option<&mut MeshBending> {
+        match self {
+            Self::Grid(_) => None,
+            Self::Torn(torn) => Some(&mut torn.mesh),
+            Self::Mesh(mesh) => Some(mesh),
+        }
+    }
+}
+
+/// In one of how many sub-steps of `dt` (s) something of this bound (1/s²) needs to bend.
+fn stride(bound: f32, dt: f32) -> u32 {
+    let weights = push::LIMIT / (bound * dt * dt);
+    (weights as u32).clamp(1, schedule::MOST_AT_ONCE)
 }
 
 impl Bending {
@@ -72,16 +100,19 @@ impl Bending {
         let of = match surface.as_grid() {
             Some(grid) => Kind::Grid(Box::new(GridBending::new(grid, rigidities))),
             None => {
-                let known = known.and_then(|(known, surface)| match &known.of {
-                    Kind::Grid(_) => None,
-                    Kind::Mesh(mesh) => Some(KnownMatrix {
-                        matrix: mesh.matrix(),
+                let known = known.and_then(|(known, surface)| {
+                    Some(KnownMatrix {
+                        matrix: known.of.mesh()?.matrix(),
                         surface,
                         factors: &known.factors,
-                    }),
+                    })
                 });
                 let matrix = MeshMatrix::new(surface, material.woven_bending(), &factors, known);
-                Kind::Mesh(MeshBending::new(matrix, surface))
+                let mesh = MeshBending::new(matrix, surface);
+                match TornPlate::new(surface, rigidities, &factors) {
+                    Some(plate) => Kind::Torn(Box::new(TornBending::new(plate, mesh))),
+                    None => Kind::Mesh(mesh),
+                }
             }
         };
         Some(Self { of, factors })
@@ -90,15 +121,8 @@ impl Bending {
     /// Where a mesh's matrix lies, to see which ones share it.
     #[cfg(test)]
     pub(crate) fn matrix(&self) -> Option<*const f32> {
-        match &self.of {
-            Kind::Grid(_) => None,
-            Kind::Mesh(mesh) => Some(mesh.matrix().diagonal.as_ptr()),
-        }
-    }
-
-    /// Whether its surface is that of a mesh.
-    pub(super) fn is_of_mesh(&self) -> bool {
-        matches!(self.of, Kind::Mesh(_))
+        let mesh = self.of.mesh()?;
+        Some(mesh.matrix().diagonal.as_ptr())
     }
 
     /// In one of how many sub-steps of `dt` (s) it needs to bend, for all of them: their weights together leave it soft. For the
@@ -106,10 +130,8 @@ impl Bending {
     pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
         match &self.of {
             Kind::Grid(_) => 1,
-            Kind::Mesh(mesh) => {
-                let weights = push::LIMIT / (mesh.bound(blocks) * dt * dt);
-                (weights as u32).clamp(1, schedule::MOST_AT_ONCE)
-            }
+            Kind::Torn(torn) => stride(torn.bound(blocks), dt),
+            Kind::Mesh(mesh) => stride(mesh.bound(blocks), dt),
         }
     }
 
@@ -117,6 +139,7 @@ impl Bending {
     pub(super) fn prepare(&mut self, blocks: &[Block], weight: f32) {
         match &mut self.of {
             Kind::Grid(grid) => grid.prepare(blocks, weight),
+            Kind::Torn(torn) => torn.prepare(blocks, weight),
             Kind::Mesh(mesh) => mesh.prepare(blocks, weight),
         }
     }
@@ -125,6 +148,7 @@ impl Bending {
     pub(super) fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
         match &mut self.of {
             Kind::Grid(grid) => grid.solve(blocks, kernels),
+            Kind::Torn(torn) => torn.solve(blocks, kernels),
             Kind::Mesh(mesh) => mesh.solve(blocks),
         }
     }
@@ -133,6 +157,7 @@ impl Bending {
     pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
         match &self.of {
             Kind::Grid(grid) => grid.longest_push(blocks),
+            Kind::Torn(torn) => (push::LIMIT / torn.bound(blocks)).sqrt(),
             Kind::Mesh(mesh) => mesh.longest_push(blocks),
         }
     }
@@ -141,6 +166,7 @@ impl Bending {
     pub(super) fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
         match &mut self.of {
             Kind::Grid(grid) => grid.push(blocks, weight, kernels),
+            Kind::Torn(torn) => torn.push(blocks, weight, kernels),
             Kind::Mesh(mesh) => mesh.push(blocks, weight),
         }
     }
@@ -152,11 +178,13 @@ impl Bending {
         material: &ClothMaterial,
         creasing: Option<ClothCreasing>,
     ) {
+        let rigidity = material.woven_bending();
         match (&mut self.of, surface.as_grid()) {
-            (Kind::Grid(grid), Some(of)) => grid.set_creasing(of, creasing),
-            (Kind::Mesh(mesh), None) => {
-                let rigidity = material.woven_bending();
-                mesh.set_creasing(surface, rigidity, &self.factors, creasing);
+            (Kind::Grid(grid), of) => of.map_or((), |of| grid.set_creasing(of, creasing)),
+            (of, None) => {
+                if let Some(mesh) = of.mesh_mut() {
+                    mesh.set_creasing(surface, rigidity, &self.factors, creasing);
+                }
             }
             _ => {}
         }
@@ -166,7 +194,7 @@ impl Bending {
     pub fn creases(&self) -> &[f32] {
         let creases = match &self.of {
             Kind::Grid(grid) => grid.creases().map(grid_creases::GridCreases::rest),
-            Kind::Mesh(mesh) => mesh.creases().map(mesh_creases::MeshCreases::rest),
+            of => (of.mesh().and_then(MeshBending::creases)).map(mesh_creases::MeshCreases::rest),
         };
         creases.unwrap_or_default()
     }
@@ -175,7 +203,7 @@ impl Bending {
     pub(super) fn recall_creases(&mut self, creases: &[f32]) {
         match &mut self.of {
             Kind::Grid(grid) => grid.creases_mut().map(|of| of.recall(creases)),
-            Kind::Mesh(mesh) => mesh.creases_mut().map(|of| of.recall(creases)),
+            of => (of.mesh_mut().and_then(MeshBending::creases_mut)).map(|of| of.recall(creases)),
         };
     }
 
@@ -183,7 +211,7 @@ impl Bending {
     pub(super) fn crease(&mut self, blocks: &[Block]) {
         match &mut self.of {
             Kind::Grid(grid) => grid.creases_mut().map(|of| of.flow(blocks)),
-            Kind::Mesh(mesh) => mesh.creases_mut().map(|of| of.flow(blocks)),
+            of => (of.mesh_mut().and_then(MeshBending::creases_mut)).map(|of| of.flow(blocks)),
         };
     }
 }

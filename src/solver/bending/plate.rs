@@ -41,6 +41,11 @@ impl Plate {
         }
     }
 
+    /// Of what bends along a row, down a column, and of a cell, if all of it is inside.
+    pub fn inside(&self) -> [f32; 3] {
+        [self.across, self.down, self.twist]
+    }
+
     /// Of what bends along a row.
     pub fn across(&self, row: u32, column: u32) -> f32 {
         let Layout { rows, columns, .. } = self.layout;

@@ -7,7 +7,7 @@
 
 use super::plate::Plate;
 use crate::{
-    cloth::{Block, LANES, Lanes, MapInline, W},
+    cloth::{Block, LANES, Lanes, Layout, MapInline, W},
     solver::kernels::{EDGE, Kernels, Moments, Stiffness, Vec3Lanes},
 };
 
@@ -23,8 +23,8 @@ const ENDS: usize = 3;
 pub(super) struct Push {
     rows: usize,
     strip: usize,
-    /// Of the first row and the last, and of those between.
-    stiffness: [Vec<Stiffness>; 2],
+    /// Of the first row and the last, and then of those between; or of each row.
+    stiffness: Vec<Stiffness>,
     /// Bounds of a row's sum of K (N/m): of the first or last row, the second from there, and others.
     bounds: [Vec<Lanes>; ENDS],
     places: [Vec<Vec3Lanes>; 3],
@@ -34,28 +34,36 @@ pub(super) struct Push {
 impl Push {
     pub fn new(plate: &Plate) -> Self {
         let layout = plate.layout;
-        let (rows, strip) = (layout.rows as usize, layout.strip as usize);
-        let stiffness = [0, 1].map_inline(|row| {
+        let stiffness = [0, 1].map(|row| {
             let of = |number: &dyn Fn(u32) -> f32| plate.of_columns(number).collect::<Vec<_>>();
             let across = of(&|column| plate.across(row, column));
             let down = of(&|column| plate.down(row, column));
             let twist = of(&|column| plate.twist(row, column));
             let all = across.into_iter().zip(down).zip(twist);
             all.map(|((across, down), twist)| [across, down, twist])
-                .collect()
+                .collect::<Vec<_>>()
         });
         let bounds = [0, 1, 2].map_inline(|row| {
             plate
                 .of_columns(|column| bound(plate, row, column))
                 .collect()
         });
+        Self {
+            bounds,
+            ..Self::of_rows(layout, stiffness.concat())
+        }
+    }
+
+    /// Of rows of their own, whose bounds somebody else knows.
+    pub fn of_rows(layout: Layout, stiffness: Vec<Stiffness>) -> Self {
+        let (rows, strip) = (layout.rows as usize, layout.strip as usize);
         let row = || vec![[[0.0; LANES]; 3]; strip + 2 * EDGE];
         let moments = || vec![Moments::default(); strip + 2 * EDGE];
         Self {
             rows,
             strip,
             stiffness,
-            bounds,
+            bounds: Default::default(),
             places: [row(), row(), row()],
             moments: [moments(), moments(), moments()],
         }
@@ -100,7 +108,11 @@ impl Push {
                 let below = (next + 1).min(rows - 1);
                 let places = [above, next, below].map_inline(|row| &*self.places[row % 3]);
                 let is_inside = next > 0 && next + 1 < rows;
-                let stiffness = &self.stiffness[usize::from(is_inside)];
+                let of = match self.stiffness.len() == 2 * strip {
+                    true => usize::from(is_inside),
+                    false => next,
+                };
+                let stiffness = &self.stiffness[of * strip..][..strip];
                 (kernels.plate_moments)(places, stiffness, moments);
             } else {
                 moments.fill(Moments::default());

@@ -4,7 +4,6 @@ use super::Solver;
 use crate::{
     cloth::ClothParticles,
     solver::{
-        bending::Bending,
         step::{TickStep, TimeOrder},
         substepping::{MAX_SUBSTEPS, Substepping},
     },
@@ -63,13 +62,7 @@ impl Solver {
         order: TimeOrder,
     ) -> u32 {
         let needed = Substepping::needed(along, seconds);
-        // The bending of a torn or mapped grid costs as much with forces.
-        let bends_as_mesh = (self.bending.as_ref()).is_some_and(Bending::is_of_mesh);
-        let most = if bends_as_mesh {
-            needed
-        } else {
-            CHEAPER * needed
-        };
+        let most = CHEAPER * needed;
         if order == TimeOrder::First || !self.may_be_explicit(particles, seconds / most as f32) {
             return needed;
         }

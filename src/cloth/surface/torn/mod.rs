@@ -22,6 +22,9 @@
 
 mod split;
 mod springs;
+mod stencils;
+
+pub(crate) use stencils::GridStencil;
 
 use std::sync::{Arc, OnceLock};
 

@@ -99,7 +99,7 @@ impl Torn {
     }
 
     /// The particle at a corner of a face, by the particle of the whole surface.
-    fn corner(&self, face: u32, particle: u32) -> u32 {
+    pub(super) fn corner(&self, face: u32, particle: u32) -> u32 {
         let face = face as usize;
         let at = (self.whole.triangles()[face].iter()).position(|corner| *corner == particle);
         self.corners[face][at.unwrap_or(0)]

@@ -76,6 +76,7 @@ fn added(
 fn is_soft(bending: &Bending) -> bool {
     match &bending.of {
         Kind::Grid(grid) => grid.is_soft(),
+        Kind::Torn(torn) => torn.is_soft(),
         Kind::Mesh(mesh) => mesh.is_soft(),
     }
 }

@@ -1,7 +1,7 @@
 //! Matrices of torn meshes.
 
 use super::*;
-use crate::cloth::ClothTears;
+use crate::cloth::{ClothGrid, ClothTears};
 
 /// A matrix that copies rows from that of other tears is the one that would be built, bit for bit: of meshes flat and curved, with a
 /// grain or a map, and of a torn grid, as tears come and go. Most rows are copied.
@@ -86,5 +86,140 @@ fn a_matrix_follows_tears() {
             (before, known, factors) = (after, copied, factors_after);
         }
         assert!(most_pieces > 2, "{name}: {most_pieces} pieces");
+    }
+}
+
+fn grid(columns: u32, rows: u32) -> (ClothGrid, Arc<Surface>) {
+    let cloth = Cloth::new(columns, rows, 0.02);
+    let grid = cloth.grid(Vec3::new(1.0, 1.3, 1.0)).expect("valid");
+    let surface = Arc::new(Surface::of_grid(&grid));
+    (grid, surface)
+}
+
+/// A grid with this many of its faces torn out, and a cut in its middle.
+pub fn shreds(columns: u32, rows: u32, count: usize) -> Surface {
+    let (_, whole) = grid(columns, rows);
+    let (mut tears, mut noise) = (ClothTears::default(), noise());
+    let faces = whole.triangles();
+    for _ in 0..count {
+        let at = ((noise() + 1.0) / 2.0 * faces.len() as f64) as usize;
+        tears.tear_out(&whole, faces[at.min(faces.len() - 1)]);
+    }
+    let middle = columns * (rows / 2);
+    tears.tear_all((1..columns / 2).map(|column| [middle + column, middle + column + 1]));
+    whole.torn(tears.edges()).expect("edges that exist")
+}
+
+/// A grid that is torn nowhere, as that of a map is, is pushed as a grid, to the bit.
+#[test]
+fn a_mapped_grid_is_pushed_as_a_grid() {
+    for (columns, rows) in [(2, 2), (3, 3), (2, 9), (9, 4), (17, 10)] {
+        let (_, whole) = grid(columns, rows);
+        let mapped = whole.torn(&[]).expect("a grid");
+        assert!(mapped.as_grid().is_none());
+        let [mut of_grid, mut of_mapped] =
+            [&*whole, &mapped].map(|of| Bending::new(of, &material()).expect("it is stiff"));
+        let particles = disturbed(&whole, 5, 0.005);
+        let weight = softest(&mut of_grid, &particles).min(1.0e-6);
+        let expected = added(&mut of_grid, &particles, weight, SimdLevel::Auto);
+        let particles = disturbed(&mapped, 5, 0.005);
+        let found = added(&mut of_mapped, &particles, weight, SimdLevel::Auto);
+        assert!(is_soft(&of_mapped), "{columns} × {rows}");
+        assert_eq!(found, expected, "{columns} × {rows}");
+    }
+}
+
+/// Both parts of a grid that is cut along a row or a column are pushed as grids of their own. Places within 0.3 m are rounded by
+/// 1.5·10⁻⁸ m, which is less than 10⁻⁵ of second differences of 5 mm.
+#[test]
+fn pieces_of_a_cut_grid_are_pushed_as_grids() {
+    for along_row in [true, false] {
+        let (columns, rows) = (8, 11);
+        let (_, whole) = grid(columns, rows);
+        let edge = |at: u32| match along_row {
+            true => [4 * columns + at, 4 * columns + at + 1],
+            false => [at * columns + 4, (at + 1) * columns + 4],
+        };
+        let last = if along_row { columns } else { rows } - 1;
+        let edges: Vec<[u32; 2]> = (0..last).map(edge).collect();
+        let torn = whole.torn(&edges).expect("edges of the grid");
+        assert_eq!(torn.pieces(), 2);
+        let mut bending = Bending::new(&torn, &material()).expect("it is stiff");
+        let particles = disturbed(&torn, 7, 0.005);
+        // Sums of bounds are rounded.
+        let weight = 0.999 * softest(&mut bending, &particles).min(1.0e-6);
+        let found = added(&mut bending, &particles, weight, SimdLevel::Auto);
+        assert!(is_soft(&bending));
+        let of = torn.graph().pieces_of();
+        for piece in [of[0], of[of.len() - 1]] {
+            let mut own: Vec<usize> = (0..of.len()).filter(|at| of[*at] == piece).collect();
+            own.sort_by_key(|at| torn.origin_of(*at as u32));
+            let count = own.len() as u32;
+            let (columns, rows) = match along_row {
+                true => (columns, count / columns),
+                false => (count / rows, rows),
+            };
+            let (_, alone) = grid(columns, rows);
+            let mut bending = Bending::new(&alone, &material()).expect("it is stiff");
+            let mut part = ClothParticles::at_rest(&alone, &material()).expect("valid");
+            for (to, from) in own.iter().enumerate() {
+                let (to, from) = (part.layout().slot_of(to), torn.layout().slot_of(*from));
+                let (was, block) = (
+                    &particles.blocks()[from.block],
+                    &mut part.blocks_mut()[to.block],
+                );
+                block.set_position(to.lane, was.position(from.lane));
+                block.set_displacement(to.lane, was.displacement(from.lane));
+                block.set_inverse_mass(to.lane, was.inverse_mass(from.lane));
+            }
+            let expected = added(&mut bending, &part, weight, SimdLevel::Auto);
+            assert!(is_soft(&bending));
+            let largest = expected.iter().map(|of| of.length()).fold(0.0, f32::max);
+            for (at, expected) in own.iter().zip(&expected) {
+                let off = found[*at].distance(*expected);
+                assert!(
+                    off <= 1.0e-6 * largest + 1.0e-10,
+                    "{at}: {off} of {largest}"
+                );
+            }
+        }
+    }
+}
+
+/// The bound of shreds is one of the largest eigenvalue of what pushes, and at most four times that.
+#[test]
+fn shreds_are_pushed_below_the_limit() {
+    for seed in 1..12 {
+        let surface = shreds(11, 9, seed);
+        let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
+        let mut particles = disturbed(&surface, 0, 0.0);
+        let weight = softest(&mut bending, &particles);
+        bending.prepare(particles.blocks(), weight);
+        assert!(is_soft(&bending));
+        let mut noise = noise();
+        for index in 0..particles.len() {
+            let moved = DVec3::new(noise(), noise(), noise()).as_vec3();
+            let set = particles.set_displacement(index, 1.0e-3 * moved);
+            set.expect("it exists");
+        }
+        let mut largest = 0.0_f32;
+        for _ in 0..300 {
+            let moved = added(&mut bending, &particles, weight, SimdLevel::Auto);
+            // In the norm in which the matrix is symmetric.
+            let norm = |of: &mut dyn Iterator<Item = Vec3>| -> f32 {
+                let each = of.zip(particles.inverse_masses());
+                let squares = each.map(|(moved, weight)| moved.length_squared() / weight);
+                squares.sum::<f32>().sqrt()
+            };
+            let after = norm(&mut moved.iter().copied());
+            largest = after / norm(&mut particles.displacements());
+            for (index, moved) in moved.into_iter().enumerate() {
+                let set = particles.set_displacement(index, moved * (1.0e-2 / after));
+                set.expect("it exists");
+            }
+        }
+        // Sums of floats are right to a thousandth of a hundredth.
+        let range = push::LIMIT / 4.0..push::LIMIT * (1.0 + 1.0e-5);
+        assert!(range.contains(&largest), "{largest}");
     }
 }

@@ -1,0 +1,195 @@
+//! The bending of a grid that is torn or mapped: that of a plate, whose moments differ from place to place. Those with particles that
+//! tears made are in a list.
+
+use bevy::math::Vec3;
+
+use super::{
+    mesh::MeshBending,
+    plate::Plate,
+    push::{LIMIT, Push},
+};
+use crate::{
+    cloth::{Block, GridStencil, LANES, Lanes, Layout, Slot, StiffnessFactors, Surface, W},
+    solver::kernels::{Kernels, Stiffness},
+};
+
+/// The forces of a torn plate.
+#[derive(Debug, Clone)]
+pub(super) struct TornPlate {
+    push: Push,
+    /// Blocks of the grid's particles.
+    blocks: usize,
+    moments: Vec<Moment>,
+    /// Bounds of each particle's sum of K (N/m), by block.
+    bounds: Vec<Lanes>,
+}
+
+/// A moment with particles that tears made.
+#[derive(Debug, Clone)]
+struct Moment {
+    /// The parts of its particles in the second difference: 1, 1 and −2 of a chain, 1, 1, −1 and −1 of a cell.
+    parts: [(Slot, f32); 4],
+    /// N/m.
+    stiffness: f32,
+    /// N.
+    value: Vec3,
+}
+
+impl TornPlate {
+    /// Of these flexural rigidities along rows and along columns (N·m), times factors; `None` if the surface was no grid.
+    pub fn new(
+        surface: &Surface,
+        rigidities: [f32; 2],
+        factors: &StiffnessFactors,
+    ) -> Option<Self> {
+        let (grid, layout) = (surface.rest_grid()?, surface.layout());
+        if layout != Layout::of_torn_grid(grid.columns(), layout.len() as u32) {
+            return None;
+        }
+        let plate = Plate::new(grid, rigidities);
+        let (of_grid, count) = (plate.layout, grid.len() as u32);
+        let mut stiffness = vec![Stiffness::default(); of_grid.blocks()];
+        let mut bounds = vec![[0.0; LANES]; layout.blocks()];
+        let mut moments = Vec::new();
+        surface.for_each_stencil(|stencil| {
+            // A chain is that of a strip of half the width, on one side of it.
+            let half = |of: [u32; 3]| factors.mean_bending(&of[1..2]) / 2.0;
+            let (kind, at, parts, factor) = match stencil {
+                GridStencil::Across { at, particles: of } => (0, at, chain(of), half(of)),
+                GridStencil::Down { at, particles: of } => (1, at, chain(of), half(of)),
+                GridStencil::Twist { at, particles: of } => {
+                    (2, at, cell(of), factors.mean_bending(&of))
+                }
+            };
+            let own = plate.inside()[kind] * factor;
+            for (particle, part) in parts {
+                let slot = layout.slot_of(particle as usize);
+                bounds[slot.block][slot.lane] += 4.0 * own * part.abs();
+            }
+            if parts.iter().all(|(particle, _)| *particle < count) {
+                let slot = of_grid.slot_of(at as usize);
+                stiffness[slot.block][kind][slot.lane] += own;
+            } else {
+                moments.push(Moment {
+                    parts: parts.map(|(particle, part)| (layout.slot_of(particle as usize), part)),
+                    stiffness: own,
+                    value: Vec3::ZERO,
+                });
+            }
+        });
+        Some(Self {
+            push: Push::of_rows(of_grid, stiffness),
+            blocks: of_grid.blocks(),
+            moments,
+            bounds,
+        })
+    }
+
+    /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
+    pub fn bound(&self, blocks: &[Block]) -> f32 {
+        let mut largest = 0.0_f32;
+        for (block, bounds) in blocks.iter().zip(&self.bounds) {
+            let weights = &block.view()[W..W + LANES];
+            for (weight, bound) in weights.iter().zip(bounds) {
+                largest = largest.max(weight * bound);
+            }
+        }
+        largest
+    }
+
+    /// Adds the forces' share to displacements, with this weight (s²): of the forces where this part of the displacements leads to.
+    pub fn apply(&mut self, blocks: &mut [Block], part: f32, weight: f32, kernels: &Kernels) {
+        for moment in &mut self.moments {
+            let [place, moved] = [Block::position, Block::displacement].map(|of| {
+                let at = |slot: &Slot| of(&blocks[slot.block], slot.lane);
+                let first = at(&moment.parts[0].0);
+                let others = moment.parts[1..].iter();
+                // Next to each other, so that no digit is lost.
+                others
+                    .map(|(slot, part)| *part * (at(slot) - first))
+                    .sum::<Vec3>()
+            });
+            moment.value = moment.stiffness * (place + part * moved);
+        }
+        (self.push).apply(&mut blocks[..self.blocks], part, weight, kernels);
+        for moment in &self.moments {
+            for (slot, part) in &moment.parts {
+                let block = &mut blocks[slot.block];
+                let pushed = -part * weight * block.inverse_mass(slot.lane) * moment.value;
+                block.set_displacement(slot.lane, block.displacement(slot.lane) + pushed);
+            }
+        }
+    }
+}
+
+/// The bending of a grid that is torn or mapped: a plate's where it is soft and does not crease, else that of the mesh of its faces.
+#[derive(Debug, Clone)]
+pub(super) struct TornBending {
+    plate: TornPlate,
+    pub mesh: MeshBending,
+    /// s (s²), and whether forces push it, as it was prepared.
+    weight: f32,
+    is_soft: bool,
+}
+
+impl TornBending {
+    pub fn new(plate: TornPlate, mesh: MeshBending) -> Self {
+        Self {
+            plate,
+            mesh,
+            weight: 0.0,
+            is_soft: true,
+        }
+    }
+
+    /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
+    pub fn bound(&self, blocks: &[Block]) -> f32 {
+        match self.mesh.creases() {
+            Some(_) => self.mesh.bound(blocks),
+            None => self.plate.bound(blocks),
+        }
+    }
+
+    pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
+        self.weight = weight;
+        self.is_soft = self.mesh.creases().is_none() && weight * self.plate.bound(blocks) < LIMIT;
+        if !self.is_soft {
+            self.mesh.prepare(blocks, weight);
+        }
+    }
+
+    /// Changes displacements by the implicit effect of the bending moments, or, where it is soft, by their forces.
+    pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+        if self.is_soft {
+            self.plate.apply(blocks, 1.0, self.weight, kernels);
+        } else {
+            self.mesh.solve(blocks);
+        }
+    }
+
+    /// Adds what the forces at the positions make of displacements with this weight (s²).
+    pub fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
+        match self.mesh.creases() {
+            Some(_) => self.mesh.push(blocks, weight),
+            None => self.plate.apply(blocks, 0.0, weight, kernels),
+        }
+    }
+}
+
+/// The second difference of three particles in a line.
+fn chain([before, own, after]: [u32; 3]) -> [(u32, f32); 4] {
+    [(before, 1.0), (after, 1.0), (own, -2.0), (own, 0.0)]
+}
+
+/// That of a cell.
+fn cell([a, b, c, d]: [u32; 4]) -> [(u32, f32); 4] {
+    [(a, 1.0), (b, 1.0), (c, -1.0), (d, -1.0)]
+}
+
+#[cfg(test)]
+impl TornBending {
+    /// Whether forces push it, as it was prepared.
+    pub fn is_soft(&self) -> bool {
+        self.is_soft
+    }
+}
