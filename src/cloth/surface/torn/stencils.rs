@@ -1,4 +1,4 @@
-//! What bends of a torn grid: chains of three particles along its rows and columns, and its cells.
+//! The stencils of a torn grid against bending: chains of three particles along its rows and columns, and its cells.
 
 use crate::cloth::surface::{Surface, Torn, springs::Side};
 
