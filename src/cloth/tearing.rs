@@ -150,7 +150,7 @@ impl TearSearch {
         }
         self.overloaded
             .sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let pieces = surface.graph().pieces_of();
+        let pieces = surface.pieces_of();
         let splits: Vec<(bool, u32, Vec<[u32; 2]>)> = (self.overloaded.iter())
             .filter_map(|(_, ends, _)| split(*ends, surface, particles, &is_tip))
             .collect();

@@ -48,7 +48,7 @@ use super::{
         ClothTouchStarted, ClothTouchStopped, Notices, OwnParts, SharedParts, WindField,
         log_notices,
     },
-    step::{hold_sleeping_pieces, integrate, let_pieces_go, push_bodies},
+    step::{integrate, push_bodies},
     write_back::{
         ClothLimitExceeded, ClothTorn, log_faults, make_bone_colliders, remove_bone_colliders,
         report_limits, report_lost, report_tears, send_stopped_messages, send_touch_messages,
@@ -225,16 +225,10 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 .run_if(resource_exists::<Time>)
                 .in_set(ClothSystems::Prepare),
             rebuild_hierarchies.in_set(ClothSystems::Rebuild),
-            (
-                hold_sleeping_pieces.run_if(any_with_component::<ClothTears>),
-                query_collisions,
-            )
-                .chain()
-                .in_set(ClothSystems::Query),
+            query_collisions.in_set(ClothSystems::Query),
             // In the schedule of transform propagation, a pushed body may be drawn a frame late.
             (
                 integrate,
-                let_pieces_go.run_if(any_with_component::<ClothTears>),
                 push_bodies.ambiguous_with(TransformSystems::Propagate),
             )
                 .chain()

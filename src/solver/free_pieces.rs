@@ -11,7 +11,7 @@ pub(crate) struct FreePieces(Vec<FreePiece>);
 #[derive(Debug, Default, Clone)]
 struct FreePiece {
     slots: Vec<Slot>,
-    /// Displacement of its centre of mass in the sub-step before (m); `None` if all of it is held.
+    /// Displacement of its centre of mass in the sub-step before (m); `None` if all of it is held, or nothing is damped.
     displacement: Option<Vec3>,
 }
 
@@ -19,8 +19,8 @@ impl FreePieces {
     /// Those of a surface with these particles.
     pub fn new(surface: &Surface, particles: &ClothParticles) -> Self {
         let of_particle = match surface.pieces() {
-            0 | 1 => Vec::new(),
-            _ => surface.graph().pieces_of(),
+            0 | 1 => &[],
+            _ => surface.pieces_of(),
         };
         let count = of_particle
             .iter()
@@ -37,9 +37,18 @@ impl FreePieces {
         Self(pieces)
     }
 
-    /// Measures how the centres of mass have moved in the last sub-step.
-    pub fn measure(&mut self, blocks: &[Block]) {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Measures how the centres of mass have moved in the last sub-step, if there is any damping.
+    pub fn measure(&mut self, blocks: &[Block], damping: f32) {
         for piece in &mut self.0 {
+            piece.displacement = None;
+            if damping == 0.0 {
+                continue;
+            }
             let (mut mass, mut moment) = (0.0, DVec3::ZERO);
             for slot in &piece.slots {
                 let block = &blocks[slot.block];

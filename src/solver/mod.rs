@@ -100,12 +100,12 @@ pub use bending::ClothCreasing;
 pub(crate) use bending::creases_of_torn;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
-#[doc(hidden)]
 pub(crate) use free_pieces::FreePieces;
 #[doc(hidden)]
 pub use kernels::SimdLevel;
 pub(crate) use motion::MotionConstraints;
 pub(crate) use partitions::with_threads_awake;
+#[doc(hidden)]
 pub use rest::{Rest, RestLimits, RestRule};
 pub(crate) use seam::{Seam, SeamCloth, SeamPull};
 pub use settings::ClothSettings;

@@ -29,9 +29,10 @@ const REACH_OF_CARRIERS: f32 = 1.0e-2;
 const WITHOUT_GRAVITY: f32 = 2.5;
 
 /// How a cloth at rest is expected to move.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub enum RestRule {
     /// Not at all.
+    #[default]
     Free,
     /// Its layers settle.
     Layers,

@@ -104,6 +104,7 @@ struct Derived {
     faces: OnceLock<Faces>,
     fans: OnceLock<Fans>,
     graph: OnceLock<Graph>,
+    pieces: OnceLock<Vec<u32>>,
     chains: OnceLock<Chains>,
     flat: OnceLock<Option<Flat>>,
     face_widths: OnceLock<Vec<f32>>,

@@ -73,6 +73,7 @@ pub(crate) fn build(
     state.inputs.as_mesh = built.is_as_mesh();
     if !resumes {
         state.wake();
+        state.resting.pieces.forget();
     }
     Ok(build)
 }

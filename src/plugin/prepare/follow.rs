@@ -48,7 +48,7 @@ pub(super) fn follow_grain(
 fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothState) {
     built.shared = shared;
     let mut solver = built.shared.solver.clone();
-    solver.take_pins_of(&mut built.solver);
+    solver.take_tethers_of(&mut built.solver);
     built.solver = solver;
     // The stretch that bounds rely on is measured over other springs now.
     state.inputs.written = None;

@@ -24,8 +24,15 @@ pub(super) fn see_whether_it_rests(
     seconds: f32,
 ) {
     let (particles, state) = (&cloth.particles, &mut *cloth.state);
-    let (built, scratch) = (&*cloth.built, &*cloth.scratch);
+    let (built, scratch) = (&*cloth.built, &mut *cloth.scratch);
     let settings = inputs.settings;
+    scratch.rest_rule = if state.resting.on.iter().any(RestsOn::is_body) {
+        RestRule::Carries
+    } else if inputs.self_collision.is_some() && state.layer_substeps > 0 {
+        RestRule::Layers
+    } else {
+        RestRule::Free
+    };
     let known = Some(*inputs);
     let (field, pressure) = (&*around.field, cloth.game.pressure(cloth.built.surface()));
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
@@ -41,14 +48,9 @@ pub(super) fn see_whether_it_rests(
         state.rest.disturb();
     } else if !state.rest.is_asleep() {
         let scale = (built.surface().diagonal(), acceleration.length());
-        let rule = if state.resting.on.iter().any(RestsOn::is_body) {
-            RestRule::Carries
-        } else if inputs.self_collision.is_some() && state.layer_substeps > 0 {
-            RestRule::Layers
-        } else {
-            RestRule::Free
-        };
-        state.rest.observe(seconds, particles, scale, rule);
+        state
+            .rest
+            .observe(seconds, particles, scale, scratch.rest_rule);
     }
     // The plugin's own writing, up to here.
     state.inputs.written = Some(particles.last_changed());

@@ -66,6 +66,7 @@ impl BuildRequest {
         );
         // The first tick needs them.
         shared.surface.fans();
+        shared.surface.pieces_of();
         if shared.surface.as_grid().is_none() {
             shared.surface.face_widths();
         }

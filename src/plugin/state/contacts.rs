@@ -98,7 +98,7 @@ impl ClothContacts {
     }
 
     /// Takes the contacts of a new tick, found in a frame that is turned by `rotation`; those of no particle are none. Particles that
-    /// sleep keep theirs.
+    /// sleep keep theirs, and a collider that only such particles touch has all numbers of its last contact.
     pub(crate) fn renew(
         &mut self,
         near: &[(Entity, MovingCollider)],
@@ -128,10 +128,17 @@ impl ClothContacts {
             let known = known.unwrap_or_default();
             let sleeping = known.iter().filter(|point| sleeps(point.particle));
             self.points.extend(sleeping.copied());
-            let particles = self.points[first..]
-                .iter()
-                .filter(|point| point.depth > 0.0)
-                .count();
+            if let Some(before) = before.filter(|_| self.points[first..].len() == known.len())
+                && known.iter().all(|point| sleeps(point.particle))
+            {
+                // Nothing else touches it.
+                let points = [first, self.points.len()];
+                self.now.push(ClothContact { points, ..*before });
+                continue;
+            }
+            let depths = self.points[first..].iter().map(|point| point.depth);
+            let particles = depths.clone().filter(|depth| *depth > 0.0).count();
+            let deepest = depths.fold(touch.deepest, f32::max);
             let Some((collider, _)) = near.get(touch.id).filter(|_| particles > 0) else {
                 self.points.truncate(first);
                 continue;
@@ -140,7 +147,7 @@ impl ClothContacts {
                 collider: *collider,
                 particles,
                 // Beyond what a float can hold: the largest.
-                deepest_penetration: touch.deepest.min(f32::MAX),
+                deepest_penetration: deepest.min(f32::MAX),
                 area: touch.area.min(f32::MAX),
                 volume: touch.volume.min(f32::MAX),
                 impulse: finite(rotation * touch.impulse),
@@ -150,6 +157,8 @@ impl ClothContacts {
                 points: [first, self.points.len()],
             });
         }
+        self.before.clear();
+        self.points_before.clear();
     }
 }
 

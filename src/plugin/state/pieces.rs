@@ -60,8 +60,13 @@ pub(crate) struct Piece {
 }
 
 impl Pieces {
-    /// Forgets all: they are awake.
+    /// Wakes all.
     pub fn wake(&mut self) {
+        self.all.iter_mut().for_each(Piece::wake);
+    }
+
+    /// Forgets which there are: the surface is torn in another way.
+    pub fn forget(&mut self) {
         self.of_particle.clear();
         self.all.clear();
     }
@@ -114,7 +119,8 @@ impl Pieces {
         seconds: f32,
     ) {
         if self.of_particle.len() != particles.len() {
-            self.of_particle = surface.graph().pieces_of();
+            self.of_particle.clear();
+            self.of_particle.extend(surface.pieces_of());
             let last = self.of_particle.iter().max();
             self.all.clear();
             (self.all).resize(last.map_or(0, |last| *last as usize + 1), Piece::default());
@@ -129,8 +135,8 @@ impl Pieces {
         for (particle, place) in particles.positions().enumerate() {
             let piece = &mut self.all[of(particle)];
             let is_near = place.distance_squared(self.origin[particle]) <= limits.reach.powi(2);
-            // NaN is not near.
-            piece.moves |= !is_near;
+            // NaN is not near. One that sleeps is held, however near it has to be from now on.
+            piece.moves |= !is_near && !piece.is_asleep;
             let [low, high] = piece.corners;
             piece.corners = [low.min(place), high.max(place)];
         }
@@ -145,48 +151,63 @@ impl Pieces {
         for piece in &mut self.all {
             piece.calm += seconds;
             if piece.moves {
-                (piece.calm, piece.is_asleep) = (0.0, false);
+                piece.wake();
             }
         }
     }
 
-    /// Lets those sleep that have been calm for so long (s) and that lie still. If pieces touch each other, `touching` is the distance
-    /// at which they may do so in this tick (m): none sleeps beside one that moves.
+    /// Lets those sleep that have been calm for so long (s) and [settle](Piece::settle). If pieces touch each other, `touching` is the
+    /// distance at which they may do so in this tick (m): none sleeps beside one that moves.
     pub fn fall_asleep(
         &mut self,
         patience: f32,
         touching: Option<f32>,
-        mut lies_still: impl FnMut(&mut Piece) -> bool,
+        mut settles: impl FnMut(&mut Piece) -> bool,
     ) {
         for at in 0..self.all.len() {
             let corners = self.all[at].corners;
-            let meets = |other: &Piece| {
-                let [low, high] = other.corners;
-                touching.is_some_and(|distance| {
+            let is_disturbed = touching.is_some_and(|distance| {
+                let meets = |[low, high]: [Vec3; 2]| {
                     let gap = (low - corners[1]).max(corners[0] - high);
                     gap.max_element() <= distance
-                })
-            };
-            let is_disturbed = |other: &Piece| other.calm < patience && meets(other);
-            let may_sleep = self.all[at].calm >= patience && !self.all.iter().any(is_disturbed);
+                };
+                let mut others = self.all.iter();
+                let moves = |other: &Piece| !other.is_asleep && other.calm < patience;
+                others.any(|other| moves(other) && meets(other.corners))
+            });
             let piece = &mut self.all[at];
-            piece.is_asleep = may_sleep && lies_still(piece);
-            if !piece.is_asleep {
-                piece.rests_on.clear();
+            if piece.calm < patience && !piece.is_asleep {
+                continue;
+            }
+            if is_disturbed {
+                // One that was awake still waits for the others.
+                if piece.is_asleep {
+                    piece.wake();
+                }
+            } else if settles(piece) {
+                piece.is_asleep = true;
+            } else {
+                piece.wake();
             }
         }
     }
 }
 
 impl Piece {
+    fn wake(&mut self) {
+        (self.calm, self.is_asleep) = (0.0, false);
+        self.rests_on.clear();
+    }
+
     /// A ball around it: middle and radius (m).
     fn ball(&self) -> (Vec3, f32) {
         let [low, high] = self.corners;
         ((low + high) / 2.0, low.distance(high) / 2.0)
     }
 
-    /// Whether nothing within `reach` of its ball (m) moves, and if it sleeps, the same colliders are there as when it fell asleep.
-    pub fn lies_still(&mut self, near: &[(Entity, MovingCollider)], reach: f32) -> bool {
+    /// Returns whether nothing within `reach` of its ball (m) moves, and if it sleeps, whether the same colliders are there as when it fell
+    /// asleep. If it is awake, these are remembered.
+    pub fn settle(&mut self, near: &[(Entity, MovingCollider)], reach: f32) -> bool {
         let (middle, radius) = self.ball();
         let mut count = 0;
         for (entity, collider) in near {
@@ -249,7 +270,7 @@ mod tests {
             pieces.observe(&surface, &particles, pins, LIMITS, TICK);
             pieces.fall_asleep(LIMITS.patience, touching, |_| true);
         }
-        let of = surface.graph().pieces_of();
+        let of = surface.pieces_of();
         let last = (of.len() - 1) as u32;
         assert_ne!(of[0], of[last as usize]);
         [0, last].map(|particle| pieces.sleeps(particle))
@@ -274,13 +295,32 @@ mod tests {
         assert_eq!(asleep_after(50, &[], None, trembles), [true; 2]);
         let is_lost = |particles: &mut ClothParticles, _| shift(particles, 0, Vec3::NAN);
         assert_eq!(asleep_after(50, &[], None, is_lost), [false, true]);
-        // Once it moves, it is awake.
-        let jumps = |particles: &mut ClothParticles, tick| {
-            if tick == 49 {
-                shift(particles, 0, 2.0e-3 * Vec3::Z);
+    }
+
+    /// Layers that settle rest sooner, and farther from where they were, than cloth that hangs. Once they sleep they touch nothing, so other
+    /// limits hold.
+    #[test]
+    fn other_limits_wake_nothing() {
+        let (surface, mut particles) = cut();
+        let mut pieces = Pieces::default();
+        for tick in 0..30 {
+            if tick < 6 {
+                shift(&mut particles, 0, 1.5e-4 * Vec3::X);
             }
-        };
-        assert_eq!(asleep_after(50, &[], None, jumps), [false, true]);
+            let limits = match tick < 8 {
+                true => LIMITS,
+                false => RestLimits {
+                    reach: 1.0e-4,
+                    patience: 2.0,
+                },
+            };
+            pieces.observe(&surface, &particles, &[], limits, TICK);
+            pieces.fall_asleep(limits.patience, Some(1.0), |_| true);
+            let is_asleep = pieces.sleeps(0);
+            assert!(is_asleep == (tick >= 6) || (4..6).contains(&tick), "{tick}");
+        }
+        pieces.fall_asleep(2.0, Some(1.0), |_| false);
+        assert!(!pieces.sleeps(0));
     }
 
     /// A pin that moves keeps its piece awake, and with layers each piece beside one that moves.

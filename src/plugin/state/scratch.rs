@@ -10,13 +10,13 @@ use bevy::{
 
 use super::pose::Pose;
 use crate::{
-    cloth::ClothParticles,
+    cloth::{ClothParticles, Slot},
     contact::{
         BodyChange, ClothSelfCollision, ContactSettings, Detection, MovingCollider, MutualContact,
     },
     hierarchy::{NodeBounds, SearchMethod, TopDownQuery},
     plugin::authoring::Carried,
-    solver::{LimitInputs, MotionConstraints, PinMotion, Substepping, TickStep},
+    solver::{LimitInputs, MotionConstraints, PinMotion, RestRule, Substepping, TickStep},
 };
 
 /// Data of a single tick, and working memory that is kept so that a tick does not allocate. You may drop it between two
@@ -35,7 +35,9 @@ pub struct ClothScratch {
     /// Pinned particles that the frame or a target carries along.
     pub(crate) pins: Vec<PinMotion>,
     /// Particles of pieces that sleep in the tick, which are held as if pinned, and their inverse masses (1/kg).
-    pub(crate) held: Vec<(u32, f32)>,
+    pub(crate) held: Vec<(Slot, f32)>,
+    /// How it and its pieces are expected to move at rest.
+    pub(crate) rest_rule: RestRule,
     /// Places of the attachments' targets, in their order.
     pub(crate) targets: Vec<Affine3A>,
     /// The pose as the tick begins, in the frame that it ends with.

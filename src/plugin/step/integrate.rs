@@ -60,6 +60,8 @@ fn simulate_island(
     let mut members = members(cloths, &island.entities);
     for Member { cloth, .. } in &mut members {
         cloth.built.solver.set_partitions(1);
+        // Other cloths touch them, or are sewn to them.
+        cloth.state.resting.pieces.wake();
     }
     let mut sewing = Sewing::begin(island, &members, seams);
     let contact = &mut island.contact;
@@ -77,20 +79,22 @@ fn simulate_alone(cloth: IntegrateQueryItem, colliders: &Colliders, names: &Quer
         return;
     };
     // Asleep.
-    if member.step.is_none() {
+    let Some(step) = member.step else {
         return;
-    }
+    };
     let cloth = &mut member.cloth;
     let partitions = match cloth.particles.len() < MIN_TO_SPLIT {
         true => 1,
         false => threads(),
     };
     cloth.built.solver.set_partitions(partitions);
+    cloth.hold_sleeping_pieces(&step);
     let touches_itself = (cloth.scratch.self_collision).is_some_and(|of| of.with_itself);
     let mut contact = touches_itself.then(|| cloth.scratch.mutual.take().unwrap_or_default());
     let mut sewing = Sewing::default();
     let (members, layers) = (std::slice::from_mut(&mut member), contact.as_deref_mut());
     simulate(members, &mut sewing, layers, colliders, names);
+    member.cloth.let_pieces_go();
     if contact.is_some() {
         member.cloth.scratch.mutual = contact;
     }

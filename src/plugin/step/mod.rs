@@ -12,5 +12,4 @@ mod substeps;
 mod tick;
 
 pub(crate) use integrate::integrate;
-pub(crate) use pieces::{hold_sleeping_pieces, let_pieces_go};
 pub(crate) use push::push_bodies;

@@ -4,8 +4,9 @@
 //! positions p to the solution y of `(M + s K) y = M p`. This is implicit Euler for bending alone, with s = Δt² and K
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
-//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction. A mesh that is
-//! softer still and touches nothing is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules
+//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction. So is a
+//! grid that is torn or mapped: as a plate whose moments differ from place to place. Otherwise it bends as the mesh of its faces. A mesh or
+//! torn grid that is softer still and touches nothing is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules
 //! are by their slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
 //!
 //! Where the cloth creases, its rest curvature is a state. It is constant in a tick and pushes at p, in frames that turn with the
@@ -126,7 +127,7 @@ impl Bending {
     }
 
     /// In one of how many sub-steps of `dt` (s) it needs to bend, for all of them: their weights together leave it soft. For the
-    /// fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable. A grid bends in each.
+    /// fastest ripple ω the time between two pushes then is at most 0.9/ω, of 2/ω that are stable. A whole grid bends in each.
     pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
         match &self.of {
             Kind::Grid(_) => 1,

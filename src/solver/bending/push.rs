@@ -23,8 +23,9 @@ const ENDS: usize = 3;
 pub(super) struct Push {
     rows: usize,
     strip: usize,
-    /// Of the first row and the last, and then of those between; or of each row.
+    /// Of the first row and the last, and then of those between; or of each row, if rows differ.
     stiffness: Vec<Stiffness>,
+    rows_differ: bool,
     /// Bounds of a row's sum of K (N/m): of the first or last row, the second from there, and others.
     bounds: [Vec<Lanes>; ENDS],
     places: [Vec<Vec3Lanes>; 3],
@@ -50,6 +51,7 @@ impl Push {
         });
         Self {
             bounds,
+            rows_differ: false,
             ..Self::of_rows(layout, stiffness.concat())
         }
     }
@@ -63,6 +65,7 @@ impl Push {
             rows,
             strip,
             stiffness,
+            rows_differ: true,
             bounds: Default::default(),
             places: [row(), row(), row()],
             moments: [moments(), moments(), moments()],
@@ -108,9 +111,9 @@ impl Push {
                 let below = (next + 1).min(rows - 1);
                 let places = [above, next, below].map_inline(|row| &*self.places[row % 3]);
                 let is_inside = next > 0 && next + 1 < rows;
-                let of = match self.stiffness.len() == 2 * strip {
-                    true => usize::from(is_inside),
-                    false => next,
+                let of = match self.rows_differ {
+                    true => next,
+                    false => usize::from(is_inside),
                 };
                 let stiffness = &self.stiffness[of * strip..][..strip];
                 (kernels.plate_moments)(places, stiffness, moments);

@@ -211,11 +211,9 @@ impl Forces {
             }
         }
         let blocks = particles.blocks_mut();
-        if kept < 1.0 {
-            free_pieces.measure(blocks);
-            let lost = (1.0 - kept) / kept;
-            free_pieces.shift(blocks, |own| lost * (own - displacement));
-        }
+        free_pieces.measure(blocks, step.damping);
+        let lost = (1.0 - kept) / kept;
+        free_pieces.shift(blocks, |own| lost * (own - displacement));
         // Before the kick, which keeps a part of it.
         self.list.push(blocks, weight / kept);
         if let Some((bending, bends_for)) = bending

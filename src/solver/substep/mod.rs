@@ -236,7 +236,7 @@ impl Solver {
     }
 
     /// Takes over the tethers and free pieces of another solver of the same particles.
-    pub(crate) fn take_pins_of(&mut self, other: &mut Self) {
+    pub(crate) fn take_tethers_of(&mut self, other: &mut Self) {
         self.tethers = std::mem::take(&mut other.tethers);
         self.free_pieces = std::mem::take(&mut other.free_pieces);
     }

@@ -124,7 +124,7 @@ impl Solver {
             particles.past_mut().forget(0);
         }
         // Other causes that turn the cloth are not known here.
-        if self.air.is_none() {
+        if self.air.is_none() && self.free_pieces.is_empty() {
             let [drift, _] = tick.damping_reference.follow(particles.blocks());
             tick.spin = Spin::of(particles, &step, pins, drift);
         }
@@ -239,7 +239,7 @@ impl Solver {
             air.before_substep(tick.next, particles, &kernels);
             tick.damping_reference.blow(air.memory().force);
         }
-        self.free_pieces.measure(particles.blocks());
+        (self.free_pieces).measure(particles.blocks(), step.damping);
         let frame = tick.damping_reference.follow(particles.blocks());
         let prediction = Prediction::new(kind, kept, pull, frame);
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.

@@ -172,7 +172,7 @@ fn what_is_wrong_with_a_snapshot_is_said() {
     assert_eq!(
         error,
         SnapshotError::Version {
-            found: 9,
+            found: 10,
             expected: 9
         }
     );

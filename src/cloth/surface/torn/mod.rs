@@ -94,6 +94,12 @@ impl Surface {
         whole.map_or_else(|| self.is_closed(), |whole| whole.is_closed())
     }
 
+    /// The connected piece of each particle, numbered from 0.
+    pub(crate) fn pieces_of(&self) -> &[u32] {
+        let find = || self.graph().pieces_of();
+        self.derived.pieces.get_or_init(find)
+    }
+
     /// The particles that tears made, each with the one that it was before.
     pub(crate) fn copies(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         let torn = self.torn.as_ref();
