@@ -14,6 +14,8 @@ struct Banner {
     pole: Entity,
     floor: Entity,
     ticks: u32,
+    /// The middle of the pole's way (m).
+    middle: f32,
 }
 
 /// The banner of this shape and material, cut in two, `with` parts that it may need.
@@ -40,6 +42,7 @@ fn cut(shape: Cloth, with: impl Bundle) -> Banner {
         pole,
         floor,
         ticks: 0,
+        middle: 0.0,
     };
     banner.tick(8);
     assert!(cut_at(&mut banner.app, -0.55) > 0);
@@ -64,7 +67,7 @@ impl Banner {
     fn tick(&mut self, ticks: u32) {
         for _ in 0..ticks {
             self.ticks += 1;
-            let along = 0.1 * (0.1 * self.ticks as f32).sin();
+            let along = self.middle + 0.1 * (0.1 * self.ticks as f32).sin();
             change::<Transform>(&mut self.app, self.pole, |pole| pole.translation.z = along);
             tick(&mut self.app, 1);
         }
@@ -272,6 +275,12 @@ fn a_piece_that_comes_down_wakes_the_one_below() {
     let high: Vec<usize> = (0..particles(&banner.app, banner.cloth).len())
         .filter(|index| !low.contains(index))
         .collect();
+    let below = banner.places(&low).iter().map(|at| at.z).sum::<f32>() / low.len() as f32;
+    for _ in 0..100 {
+        banner.middle += below / 100.0;
+        banner.tick(1);
+    }
+    assert_eq!(banner.sleeping(), low.len());
     let mut awake_at = None;
     for _ in 0..150 {
         change::<Transform>(&mut banner.app, banner.pole, |pole| {

@@ -25,8 +25,11 @@ use std::sync::Arc;
 use bevy::math::{Vec3A, Vec4};
 
 use super::{
-    creasing::ClothCreasing, mesh_creases::MeshCreases, mesh_matrix::MeshMatrix, patch::frame,
-    push::LIMIT,
+    creasing::ClothCreasing,
+    mesh_creases::MeshCreases,
+    mesh_matrix::MeshMatrix,
+    patch::frame,
+    push::{LIMIT, largest_bound},
 };
 use crate::cloth::{
     Block, DX, DY, DZ, LANES, Lanes, Layout, MapInline, StiffnessFactors, Surface, W, Woven,
@@ -120,14 +123,7 @@ impl MeshBending {
 
     /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
     pub fn bound(&self, blocks: &[Block]) -> f32 {
-        let mut largest = 0.0_f32;
-        for (block, bounds) in blocks.iter().zip(&*self.bounds) {
-            let weights = &block.view()[W..W + LANES];
-            for (weight, bound) in weights.iter().zip(bounds) {
-                largest = largest.max(weight * bound);
-            }
-        }
-        largest
+        largest_bound(blocks, &self.bounds)
     }
 
     /// Takes places and displacements.

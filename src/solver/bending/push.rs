@@ -128,6 +128,18 @@ impl Push {
     }
 }
 
+/// A bound of the largest eigenvalue of `M⁻¹ K` (1/s²), from sums of the absolute values in each particle's row of K (N/m).
+pub(super) fn largest_bound(blocks: &[Block], bounds: &[Lanes]) -> f32 {
+    let mut largest = 0.0_f32;
+    for (block, bounds) in blocks.iter().zip(bounds) {
+        let weights = &block.view()[W..W + LANES];
+        for (weight, bound) in weights.iter().zip(bounds) {
+            largest = largest.max(weight * bound);
+        }
+    }
+    largest
+}
+
 /// Upper bound of the sum of absolute values in a particle's row of K (N/m).
 fn bound(plate: &Plate, row: u32, column: u32) -> f32 {
     let of = |k: &dyn Fn(u32, u32) -> f32, down: i64, right: i64| {

@@ -6,10 +6,10 @@ use bevy::math::Vec3;
 use super::{
     mesh::MeshBending,
     plate::Plate,
-    push::{LIMIT, Push},
+    push::{LIMIT, Push, largest_bound},
 };
 use crate::{
-    cloth::{Block, GridStencil, LANES, Lanes, Layout, Slot, StiffnessFactors, Surface, W},
+    cloth::{Block, GridStencil, LANES, Lanes, Layout, Slot, StiffnessFactors, Surface},
     solver::kernels::{Kernels, Stiffness},
 };
 
@@ -87,14 +87,7 @@ impl TornPlate {
 
     /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
     pub fn bound(&self, blocks: &[Block]) -> f32 {
-        let mut largest = 0.0_f32;
-        for (block, bounds) in blocks.iter().zip(&self.bounds) {
-            let weights = &block.view()[W..W + LANES];
-            for (weight, bound) in weights.iter().zip(bounds) {
-                largest = largest.max(weight * bound);
-            }
-        }
-        largest
+        largest_bound(blocks, &self.bounds)
     }
 
     /// Adds the forces' share to displacements, with this weight (s²): of the forces where this part of the displacements leads to.
