@@ -6,7 +6,11 @@ use crate::cloth::{Block, ClothParticles, Slot, Surface};
 
 /// The pieces of a cloth in several pieces that no pin holds. None of a cloth of one piece.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct FreePieces(Vec<FreePiece>);
+pub(crate) struct FreePieces {
+    all: Vec<FreePiece>,
+    /// The lanes of each block that are theirs, as bits; none if there are no such pieces.
+    lanes: Vec<u8>,
+}
 
 #[derive(Debug, Default, Clone)]
 struct FreePiece {
@@ -34,19 +38,35 @@ impl FreePieces {
         }
         let mut is_held = is_held.into_iter();
         pieces.retain(|_| is_held.next() == Some(false));
-        Self(pieces)
+        let mut lanes = vec![
+            0;
+            if pieces.is_empty() {
+                0
+            } else {
+                surface.layout().blocks()
+            }
+        ];
+        for slot in pieces.iter().flat_map(|piece| &piece.slots) {
+            lanes[slot.block] |= 1 << slot.lane;
+        }
+        Self { all: pieces, lanes }
     }
 
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+    /// Whether a particle is part of one.
+    #[inline]
+    pub fn hold(&self, block: usize, lane: usize) -> bool {
+        self.lanes
+            .get(block)
+            .is_some_and(|lanes| lanes & (1 << lane) != 0)
     }
 
     /// Measures how the centres of mass have moved in the last sub-step, if there is any damping.
     pub fn measure(&mut self, blocks: &[Block], damping: f32) {
-        for piece in &mut self.0 {
+        for piece in &mut self.all {
             piece.displacement = None;
-            if damping == 0.0 {
+            let is_held = |slot: &Slot| blocks[slot.block].inverse_mass(slot.lane) == 0.0;
+            // One that sleeps is held as a whole.
+            if damping == 0.0 || piece.slots.first().is_none_or(is_held) {
                 continue;
             }
             let (mut mass, mut moment) = (0.0, DVec3::ZERO);
@@ -67,7 +87,7 @@ impl FreePieces {
         for FreePiece {
             slots,
             displacement,
-        } in &self.0
+        } in &self.all
         {
             let Some(more) = displacement.map(&more) else {
                 continue;

@@ -11,7 +11,10 @@
 
 use bevy::math::Vec3;
 
-use super::step::{PinMotion, TickStep};
+use super::{
+    free_pieces::FreePieces,
+    step::{PinMotion, TickStep},
+};
 use crate::cloth::{ClothParticles, DX, LANES, MapInline, Slot, View, W, X};
 
 /// Largest distance of pins from the line, as a fraction of its length, and largest difference of their motions.
@@ -65,6 +68,7 @@ impl Spin {
         step: &TickStep,
         pins: &[PinMotion],
         drift: Vec3,
+        free_pieces: &FreePieces,
     ) -> Option<Self> {
         let down = step.acceleration.try_normalize()?;
         let layout = particles.layout();
@@ -74,7 +78,8 @@ impl Spin {
             .filter(|(_, block)| block.view()[W..W + LANES].contains(&0.0))
             .flat_map(|(index, block)| {
                 let is_pinned = move |lane: &usize| {
-                    block.inverse_mass(*lane) == 0.0 && layout.index_at(index, *lane).is_some()
+                    let exists = layout.index_at(index, *lane).is_some();
+                    block.inverse_mass(*lane) == 0.0 && exists && !free_pieces.hold(index, *lane)
                 };
                 (0..LANES)
                     .filter(is_pinned)
@@ -120,19 +125,25 @@ impl Spin {
                 seconds: step.seconds * step.seconds / substeps as f32,
                 before: Turning::default(),
             };
-            spin.before = spin.measure(particles, origin);
+            spin.before = spin.measure(particles, origin, free_pieces);
             spin
         })
     }
 
-    fn measure(&self, particles: &ClothParticles, origin: Vec3) -> Turning {
+    /// Pieces that no pin holds do not count.
+    fn measure(
+        &self,
+        particles: &ClothParticles,
+        origin: Vec3,
+        free_pieces: &FreePieces,
+    ) -> Turning {
         let mut sums = [[0.0_f32; LANES]; 4];
-        for block in particles.blocks() {
+        for (index, block) in particles.blocks().iter().enumerate() {
             let view = block.view();
             for lane in 0..LANES {
                 let turned = self.axis.cross(lane_of(view, X, lane) - origin);
                 let moved = lane_of(view, DX, lane) - self.displacement;
-                let is_free = view[W + lane] > 0.0;
+                let is_free = view[W + lane] > 0.0 && !free_pieces.hold(index, lane);
                 let mass = if is_free { 1.0 / view[W + lane] } else { 0.0 };
                 sums[0][lane] += mass * turned.dot(moved);
                 sums[1][lane] += mass * turned.length_squared();
@@ -152,9 +163,9 @@ impl Spin {
     /// Turns the cloth as a whole, so that its angular momentum is that after gravity's torque and damping. The torque is the mean of
     /// that at both ends of the tick. Damping keeps the fraction `kept` of each velocity. Also takes back the angle by which it was turned in the tick, in which the difference has grown
     /// evenly.
-    pub fn restore(&self, particles: &mut ClothParticles, kept: f32) {
+    pub fn restore(&self, particles: &mut ClothParticles, kept: f32, free_pieces: &FreePieces) {
         let origin = self.origin + self.shift;
-        let after = self.measure(particles, origin);
+        let after = self.measure(particles, origin, free_pieces);
         // Damping holds against what it is relative to, which need not be the line.
         let pulled = 0.5 * (self.before.torque + after.torque) * self.seconds;
         let expected = kept * self.before.momentum - (1.0 - kept) * self.before.carried + pulled;
@@ -169,7 +180,7 @@ impl Spin {
             for lane in 0..LANES {
                 let block = &mut particles.blocks_mut()[index];
                 let turned = self.axis.cross(lane_of(block.view(), X, lane) - origin);
-                if block.inverse_mass(lane) > 0.0 {
+                if block.inverse_mass(lane) > 0.0 && !free_pieces.hold(index, lane) {
                     block.set_position(lane, block.position(lane) + turned * back);
                     particles.accelerate(Slot { block: index, lane }, turned * turn);
                 }

@@ -32,7 +32,7 @@ pub struct TickStep {
     pub has_layers: bool,
 }
 
-/// The frame in which damping acts. A piece of a cloth that no pin holds is damped relative to its own centre of mass.
+/// The frame in which damping acts. The plugin damps a piece that no pin holds relative to its own centre of mass.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 pub enum DampingFrame {
     /// At rest: the paper's equation (2). It slows down free fall as well.

@@ -307,7 +307,12 @@ fn a_sleeping_piece_is_in_a_snapshot() {
     let ticks = banner.ticks;
     banner.tick(60);
     let expected = particles(&banner.app, banner.cloth).clone();
-    let sleeping = banner.sleeping();
+    let touches = |banner: &Banner| -> Vec<ClothContact> {
+        let contacts = banner.app.world().get::<ClothContacts>(banner.cloth);
+        contacts.expect("contacts").iter().copied().collect()
+    };
+    let (sleeping, touched) = (banner.sleeping(), touches(&banner));
+    assert!(!touched.is_empty());
     assert!(sleeping > 0);
     saved
         .restore(banner.app.world_mut())
@@ -317,6 +322,7 @@ fn a_sleeping_piece_is_in_a_snapshot() {
     assert_eq!(banner.sleeping(), sleeping);
     banner.tick(59);
     assert!(*particles(&banner.app, banner.cloth) == expected);
+    assert_eq!(touches(&banner), touched);
     let text = ron::to_string(&saved).expect("it can be written");
     let read: ClothWorldSnapshot = ron::from_str(&text).expect("it can be read");
     let mut fresh = cut(grid(), ());
@@ -327,4 +333,5 @@ fn a_sleeping_piece_is_in_a_snapshot() {
     assert_eq!(fresh.sleeping(), sleeping);
     fresh.tick(59);
     assert!(*particles(&fresh.app, fresh.cloth) == expected);
+    assert_eq!(touches(&fresh), touched);
 }

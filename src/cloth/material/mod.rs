@@ -63,7 +63,7 @@ pub struct ClothMaterial {
     ///
     /// The velocity of a pinned cloth is relative to the mean velocity of its pins: a cape hangs the same in a moving
     /// vehicle as in a parked one. That of a cloth without pins, or of a piece without pins, is
-    /// relative to its centre of mass: all materials fall alike, and only their spin slows down. [`Solver`](crate::solver::Solver), used on its own, damps relative
+    /// relative to its centre of mass: all materials fall alike, and damping slows only how they turn and ripple. [`Solver`](crate::solver::Solver), used on its own, damps relative
     /// to the velocity in [`TickStep`](crate::solver::TickStep).
     pub damping: f32,
     /// Coulomb's μ against colliders, zero or more.

@@ -95,5 +95,4 @@ pub(crate) fn clear_stats(stats: &mut ClothStats, is_asleep: bool) {
     stats.requeries = 0;
     stats.air_impulse = Vec3::ZERO;
     (stats.layer_pairs, stats.layer_searches) = (0, 0);
-    stats.sleeping_particles = 0;
 }

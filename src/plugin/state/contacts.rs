@@ -119,8 +119,7 @@ impl ClothContacts {
             (self.points).extend(points.filter(|point| !sleeps(point.particle)));
             let collider = near.get(touch.id).map(|(collider, _)| *collider);
             let mut before = self.before.iter();
-            let is_first = self.now.iter().all(|now| Some(now.collider) != collider);
-            let before = before.find(|before| is_first && Some(before.collider) == collider);
+            let before = before.find(|before| Some(before.collider) == collider);
             let known = before.and_then(|before| {
                 let [first, end] = before.points;
                 self.points_before.get(first..end)

@@ -71,7 +71,7 @@ impl Pieces {
         self.all.clear();
     }
 
-    /// Copies `other` into its own memory.
+    /// Copies `other` into its own memory, but for the colliders that pieces rest on.
     pub fn copy_from(&mut self, other: &Self) {
         self.of_particle.clone_from(&other.of_particle);
         self.all.clone_from(&other.all);
@@ -141,7 +141,9 @@ impl Pieces {
             piece.corners = [low.min(place), high.max(place)];
         }
         for pin in pins {
-            self.all[of(pin.particle as usize)].moves = true;
+            if let Some(piece) = self.of_particle.get(pin.particle as usize) {
+                self.all[*piece as usize].moves = true;
+            }
         }
         for (particle, place) in particles.positions().enumerate() {
             if self.all[of(particle)].moves {
@@ -165,7 +167,15 @@ impl Pieces {
         mut settles: impl FnMut(&mut Piece) -> bool,
     ) {
         for at in 0..self.all.len() {
-            let corners = self.all[at].corners;
+            let Piece {
+                corners,
+                calm,
+                is_asleep,
+                ..
+            } = self.all[at];
+            if calm < patience && !is_asleep {
+                continue;
+            }
             let is_disturbed = touching.is_some_and(|distance| {
                 let meets = |[low, high]: [Vec3; 2]| {
                     let gap = (low - corners[1]).max(corners[0] - high);
@@ -176,9 +186,6 @@ impl Pieces {
                 others.any(|other| moves(other) && meets(other.corners))
             });
             let piece = &mut self.all[at];
-            if piece.calm < patience && !piece.is_asleep {
-                continue;
-            }
             if is_disturbed {
                 // One that was awake still waits for the others.
                 if piece.is_asleep {

@@ -4,6 +4,7 @@ use bevy::ecs::system::{Query, ResMut};
 
 use super::{
     member::{Member, members},
+    pieces::{hold_sleeping_pieces, let_pieces_go},
     seams::{Sewing, SewnSeams},
     substeps::simulate,
     tick::{Colliders, IntegrateQuery, IntegrateQueryItem},
@@ -88,13 +89,13 @@ fn simulate_alone(cloth: IntegrateQueryItem, colliders: &Colliders, names: &Quer
         false => threads(),
     };
     cloth.built.solver.set_partitions(partitions);
-    cloth.hold_sleeping_pieces(&step);
+    hold_sleeping_pieces(cloth, &step);
     let touches_itself = (cloth.scratch.self_collision).is_some_and(|of| of.with_itself);
     let mut contact = touches_itself.then(|| cloth.scratch.mutual.take().unwrap_or_default());
     let mut sewing = Sewing::default();
     let (members, layers) = (std::slice::from_mut(&mut member), contact.as_deref_mut());
     simulate(members, &mut sewing, layers, colliders, names);
-    member.cloth.let_pieces_go();
+    let_pieces_go(&mut member.cloth);
     if contact.is_some() {
         member.cloth.scratch.mutual = contact;
     }

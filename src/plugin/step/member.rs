@@ -72,6 +72,7 @@ impl<'w, 's> Member<'w, 's> {
         }
         cloth.stats.is_asleep = is_asleep;
         (cloth.stats.integrate_ms, cloth.stats.substeps) = (0.0, 0);
+        cloth.stats.sleeping_particles = 0;
         Some(Self {
             may_repeat: !is_asleep && cloth.may_repeat(),
             cloth,

@@ -4,10 +4,10 @@
 //! positions p to the solution y of `(M + s K) y = M p`. This is implicit Euler for bending alone, with s = Δt² and K
 //! the matrix of the bending energy. That energy is quadratic in the positions as long as the cloth does not stretch
 //! (Bergou et al. 2006). So K is constant, the same for x, y and z, and stable at any rigidity and sub-step. A surface
-//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction. So is a
-//! grid that is torn or mapped: as a plate whose moments differ from place to place. Otherwise it bends as the mesh of its faces. A mesh or
-//! torn grid that is softer still and touches nothing is pushed in every second, third or fourth sub-step, for all of them: by impulses, as molecules
-//! are by their slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
+//! that is soft enough for its sub-steps is pushed by `−s K p` instead, which is as good there and costs a fraction.
+//! A torn or mapped grid is pushed as a plate whose moments differ from place to place; if it is stiffer, or creases, it bends as the mesh
+//! of its faces. A mesh or such a grid that is softer still and touches nothing is pushed in every second, third or fourth sub-step, for
+//! all of them: by impulses, as molecules are by their slow forces (Grubmüller et al. 1991; Tuckerman, Berne and Martyna 1992).
 //!
 //! Where the cloth creases, its rest curvature is a state. It is constant in a tick and pushes at p, in frames that turn with the
 //! cloth; as the tick ends, it follows by the return mapping of plasticity with linear kinematic hardening (Simo and Hughes 1998).

@@ -1,4 +1,4 @@
-//! The bending of a grid that is torn or mapped: that of a plate, whose moments differ from place to place. Those with particles that
+//! The bending of a grid that is torn or mapped: that of a plate, whose moments differ from place to place. Moments of particles that
 //! tears made are in a list.
 
 use bevy::math::Vec3;

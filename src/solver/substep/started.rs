@@ -124,9 +124,9 @@ impl Solver {
             particles.past_mut().forget(0);
         }
         // Other causes that turn the cloth are not known here.
-        if self.air.is_none() && self.free_pieces.is_empty() {
+        if self.air.is_none() {
             let [drift, _] = tick.damping_reference.follow(particles.blocks());
-            tick.spin = Spin::of(particles, &step, pins, drift);
+            tick.spin = Spin::of(particles, &step, pins, drift, &self.free_pieces);
         }
         tick
     }
@@ -388,7 +388,7 @@ impl Solver {
             && !is_pushed
         {
             let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
-            spin.restore(particles, kept);
+            spin.restore(particles, kept, &self.free_pieces);
         }
         put_pins(particles, pins);
         if stretch.structural > step.material_stretch + UNSOLVED {

@@ -131,7 +131,7 @@ fn a_stride_leaves_a_mesh_soft() {
 /// Forces have neither a sum nor a moment, of a torn grid neither.
 #[test]
 fn forces_keep_momentum() {
-    let torn = (1..8).map(|seed| torn::shreds(9, 8, seed));
+    let torn = (1..8).map(|count| torn::shreds(9, 8, count));
     for surface in grids().map(|(_, surface)| surface).chain(torn) {
         let particles = disturbed(&surface, 0, 0.005);
         let mut bending = Bending::new(&surface, &material()).expect("it is stiff");

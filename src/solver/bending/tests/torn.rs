@@ -221,8 +221,8 @@ fn a_map_counts_in_each_row() {
 /// The bound of shreds is one of the largest eigenvalue of what pushes, and at most four times that.
 #[test]
 fn shreds_are_pushed_below_the_limit() {
-    for seed in 1..12 {
-        let surface = shreds(11, 9, seed);
+    for count in 1..12 {
+        let surface = shreds(11, 9, count);
         let mut bending = Bending::new(&surface, &material()).expect("it is stiff");
         let mut particles = disturbed(&surface, 0, 0.0);
         let weight = softest(&mut bending, &particles);
