@@ -1,7 +1,7 @@
 //! A flag that hangs by its pole does not turn round it by itself.
 
 use bevy::prelude::*;
-use bevy_drape::prelude::*;
+use bevy_drape::{plugin::ClothBuilt, prelude::*};
 
 use super::meshes::sheets::sheet;
 use crate::support::*;
@@ -34,6 +34,43 @@ fn what_hangs_by_a_line_comes_to_rest() {
         });
         assert!(asleep.is_some(), "{substeps} sub-steps");
     }
+}
+
+/// A flag that has lost a scrap from its free end comes to rest, too: neither as it falls nor as it lies on the floor does the scrap count.
+#[test]
+fn a_flag_that_lost_a_scrap_comes_to_rest() {
+    let mut app = app();
+    let material = ClothMaterial {
+        damping: 0.05,
+        ..default()
+    };
+    let floor = Transform::from_xyz(0.0, -2.5, 0.0);
+    app.world_mut().spawn((ClothCollider::plane(), floor));
+    let flag = (
+        Cloth::new(24, 16, 0.06),
+        Pins::new([Pin::Column(0)]),
+        material,
+        ClothSettings::substeps(20),
+        ClothTears::default(),
+    );
+    let cloth = app.world_mut().spawn(flag).id();
+    tick(&mut app, 1);
+    let whole = app.world().get::<ClothBuilt>(cloth).expect("it is built");
+    let whole = whole.surface().clone();
+    change::<ClothTears>(&mut app, cloth, |tears| {
+        let face = whole.triangles().last().expect("faces");
+        assert!(tears.tear_out(&whole, *face) > 0);
+    });
+    tick(&mut app, 1);
+    let built = app.world().get::<ClothBuilt>(cloth);
+    assert_eq!(built.expect("it is built").surface().pieces(), 2);
+    let mut has_slept = false;
+    let asleep = (0..20 * 64).find(|_| {
+        tick(&mut app, 1);
+        has_slept |= stats(&app, cloth).sleeping_particles > 0;
+        stats(&app, cloth).is_asleep
+    });
+    assert!(asleep.is_some() && has_slept, "{asleep:?} {has_slept}");
 }
 
 /// Turned on purpose, a flag without damping keeps its angular momentum about its pole: within a thousandth after two
