@@ -284,7 +284,7 @@ fn a_piece_that_comes_down_wakes_the_one_below() {
     let mut awake_at = None;
     for _ in 0..150 {
         change::<Transform>(&mut banner.app, banner.pole, |pole| {
-            pole.translation.y -= 0.007
+            pole.translation.y -= 0.007;
         });
         banner.tick(1);
         if banner.sleeping() == 0 {

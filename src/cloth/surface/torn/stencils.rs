@@ -60,15 +60,18 @@ impl Surface {
                 is_whole.then_some([before[0], after[0], after[1]])
             };
             for side in 0..2 {
-                if column > 0 {
-                    let edges = [at - 1, at].map(|from| across[from as usize][side]);
-                    let particles = chain(edges[0], edges[1]);
-                    particles.map(|particles| visit(GridStencil::Across { at, particles }));
+                let edges = |of: &[[[u32; 2]; 2]], step: u32| {
+                    chain(of[(at - step) as usize][side], of[at as usize][side])
+                };
+                if column > 0
+                    && let Some(particles) = edges(&across, 1)
+                {
+                    visit(GridStencil::Across { at, particles });
                 }
-                if row > 0 {
-                    let edges = [at - columns, at].map(|from| down[from as usize][side]);
-                    let particles = chain(edges[0], edges[1]);
-                    particles.map(|particles| visit(GridStencil::Down { at, particles }));
+                if row > 0
+                    && let Some(particles) = edges(&down, columns)
+                {
+                    visit(GridStencil::Down { at, particles });
                 }
             }
         }
