@@ -148,7 +148,7 @@ fn a_piece_sleeps_while_the_other_moves() {
     }
 }
 
-/// What no pin holds is not slowed by damping, and does not follow a pole that moves: its centre of mass gains g in each second, on grid
+/// Damping does not slow a piece without pins, and such a piece does not follow a pole that moves: its centre of mass gains g in each second, on grid
 /// and mesh, and with soft springs that act by forces. Places of up to 2 m are rounded by 6·10⁻⁸ m in each of 720 sub-steps.
 #[test]
 fn a_piece_falls_as_if_there_was_no_damping() {
@@ -198,7 +198,7 @@ fn a_piece_falls_as_if_there_was_no_damping() {
     }
 }
 
-/// What would move it wakes it in the very tick, and for longer than that; what happens elsewhere does not. Without a floor, it falls.
+/// A piece wakes in the very tick in which something could move it, and stays awake. Events elsewhere let it sleep. Without a floor, it falls.
 #[test]
 fn whatever_would_move_a_piece_wakes_it() {
     type Wake = fn(&mut Banner, Vec3);

@@ -43,7 +43,7 @@ pub struct ClothState {
     pub(crate) attachments: AttachmentMemory,
     /// The pose that it follows, as the last tick ended.
     pub(crate) pose: Pose,
-    /// What it rests on, and its pieces.
+    /// The colliders that it rests on, and the rest of its pieces.
     pub(crate) resting: Resting,
     /// The particles that carried bodies as the last tick ended.
     pub(crate) carriers: Vec<(Entity, Carrier)>,

@@ -9,7 +9,7 @@ use crate::{
     solver::{PinMotion, RestLimits},
 };
 
-/// What a cloth rests on, and which of its pieces sleep.
+/// The colliders that a cloth rests on, and the rest of its pieces.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Resting {
