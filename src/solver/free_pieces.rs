@@ -22,33 +22,35 @@ struct FreePiece {
 impl FreePieces {
     /// Those of a surface with these particles.
     pub fn new(surface: &Surface, particles: &ClothParticles) -> Self {
-        let of_particle = match surface.pieces() {
-            0 | 1 => &[],
-            _ => surface.pieces_of(),
-        };
+        if surface.pieces() < 2 {
+            return Self::default();
+        }
+        let of_particle = surface.pieces_of();
         let count = of_particle
             .iter()
             .max()
             .map_or(0, |last| *last as usize + 1);
-        let mut pieces = vec![FreePiece::default(); count];
         let mut is_held = vec![false; count];
-        for (index, (piece, slot)) in of_particle.iter().zip(surface.layout().slots()).enumerate() {
-            pieces[*piece as usize].slots.push(slot);
-            is_held[*piece as usize] |= particles.is_pinned(index) == Some(true);
+        for (piece, inverse_mass) in of_particle.iter().zip(particles.inverse_masses()) {
+            is_held[*piece as usize] |= inverse_mass == 0.0;
         }
-        let mut is_held = is_held.into_iter();
-        pieces.retain(|_| is_held.next() == Some(false));
+        let layout = surface.layout();
         let mut lanes = vec![
             0;
-            if pieces.is_empty() {
-                0
+            if is_held.contains(&false) {
+                layout.blocks()
             } else {
-                surface.layout().blocks()
+                0
             }
         ];
-        for slot in pieces.iter().flat_map(|piece| &piece.slots) {
-            lanes[slot.block] |= 1 << slot.lane;
+        let mut pieces = vec![FreePiece::default(); count];
+        for (piece, slot) in of_particle.iter().zip(layout.slots()) {
+            if !is_held[*piece as usize] {
+                pieces[*piece as usize].slots.push(slot);
+                lanes[slot.block] |= 1 << slot.lane;
+            }
         }
+        pieces.retain(|piece| !piece.slots.is_empty());
         Self { all: pieces, lanes }
     }
 

@@ -16,7 +16,7 @@ use bevy_drape::{
     prelude::{
         ClothAttachments, ClothBody, ClothCollider, ClothCreasing, ClothGrab, ClothGravity,
         ClothInertia, ClothLod, ClothLodLevel, ClothPaint, ClothSeam, ClothSelfCollision,
-        ClothSettings, ClothSkin, DrapePlugins, Pin, Pins,
+        ClothSettings, ClothSkin, ClothStats, ClothTears, DrapePlugins, Pin, Pins,
     },
 };
 use stats_alloc::Region;
@@ -315,6 +315,35 @@ pub fn what_moves_together_allocates_nothing() {
         let allocations = in_ticks(app, swing);
         assert_eq!(allocations, 0, "sewn: {is_sewn}");
     }
+}
+
+/// A banner cut in two: one piece swings from its pole, the other sleeps on the floor.
+pub fn pieces_allocate_nothing() {
+    const SIDE: u32 = 12;
+    let mut app = app_on_one_thread(());
+    let floor = Transform::from_xyz(0.0, -1.2, 0.0);
+    app.world_mut().spawn((ClothCollider::plane(), floor));
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let mut tears = ClothTears::default();
+    tears.tear_all((1..SIDE).map(|column| [5 * SIDE + column - 1, 5 * SIDE + column]));
+    let banner = (
+        Cloth::new(SIDE, SIDE, 0.1),
+        Pins::none(),
+        ClothAttachments::new([(Pin::Row(0), pole)]),
+        tears,
+    );
+    let banner = app.world_mut().spawn(banner).id();
+    let swing = |world: &mut World, count: u32| {
+        let mut pole = world.get_mut::<Transform>(pole).expect("a place");
+        pole.translation.z = 0.1 * (0.1 * count as f32).sin();
+    };
+    for count in 0..64 * 12 {
+        swing(app.world_mut(), count);
+        app.update();
+    }
+    let stats = app.world().get::<ClothStats>(banner).expect("a cloth");
+    assert!(stats.sleeping_particles > 0 && !stats.is_asleep);
+    assert_eq!(in_ticks(app, swing), 0);
 }
 
 /// Whether a cloth has one attached pin or two hundred, whether what tethers do not depend on is animated, and however its level of detail

@@ -28,6 +28,7 @@ fn a_tick_does_not_allocate() {
     apps::a_hand_allocates_nothing();
     apps::what_touches_itself_allocates_nothing();
     apps::what_moves_together_allocates_nothing();
+    apps::pieces_allocate_nothing();
     apps::characters_allocate_nothing_more();
     apps::cloths_made_alike_share_all_but_their_particles();
 }

@@ -202,10 +202,26 @@ fn a_piece_falls_as_if_there_was_no_damping() {
 #[test]
 fn whatever_would_move_a_piece_wakes_it() {
     type Wake = fn(&mut Banner, Vec3);
-    let wakes: [(&str, bool, Wake); 9] = [
+    let wakes: [(&str, bool, Wake); 12] = [
         ("a ball that appears", true, |banner, at| {
             let ball = (ClothCollider::ball(0.1), Transform::from_translation(at));
             banner.app.world_mut().spawn(ball);
+        }),
+        ("a body", true, |banner, at| {
+            let ball = (ClothCollider::ball(0.1), ClothBody::default());
+            let at = Transform::from_translation(at);
+            banner.app.world_mut().spawn((ball, at));
+        }),
+        ("wind", true, |banner, _| {
+            let wind = ClothWind {
+                velocity: 0.1 * Vec3::X,
+                ..default()
+            };
+            banner.app.insert_resource(wind);
+        }),
+        ("a cloth beside it, without layers", false, |banner, at| {
+            let at = Transform::from_translation(at);
+            banner.app.world_mut().spawn((grid(), at));
         }),
         ("a ball elsewhere", false, |banner, at| {
             let away = Transform::from_translation(at + 3.0 * Vec3::X);
@@ -246,7 +262,7 @@ fn whatever_would_move_a_piece_wakes_it() {
         }),
     ];
     for (name, wakes, wake) in wakes {
-        let mut banner = cut(grid(), ());
+        let mut banner = cut(grid(), ClothAir::default());
         let low = banner.fall_asleep();
         let places = banner.places(&low);
         let middle = places.iter().sum::<Vec3>() / places.len() as f32;
@@ -261,6 +277,48 @@ fn whatever_would_move_a_piece_wakes_it() {
             assert!((fallen + 0.48).abs() < 0.05, "{fallen}");
         }
     }
+}
+
+/// On a floor that leans by 8°, which friction holds.
+#[test]
+fn a_piece_sleeps_on_a_slope() {
+    for (shape, axis) in [(grid(), Vec3::Z), (mesh(), Vec3::ONE.normalize())] {
+        let mut banner = cut(shape, ());
+        change::<Transform>(&mut banner.app, banner.floor, |floor| {
+            floor.rotation = Quat::from_axis_angle(axis, 8.0_f32.to_radians());
+        });
+        let low = banner.fall_asleep();
+        let places = banner.places(&low);
+        for _ in 0..200 {
+            banner.tick(1);
+            assert_eq!(banner.places(&low), places);
+        }
+        let awake = ClothMaterial {
+            friction: 0.02,
+            ..ClothMaterial::COTTON
+        };
+        change::<ClothMaterial>(&mut banner.app, banner.cloth, |of| *of = awake);
+        banner.tick(64);
+        let slid = banner.places(&low)[0].distance(places[0]);
+        assert!(slid > 0.2, "{slid}");
+    }
+}
+
+/// With layers, a piece does not sleep while another cloth may touch it, and sleeps once that is gone.
+#[test]
+fn a_cloth_that_may_touch_a_piece_wakes_it() {
+    let mut banner = cut(grid(), ClothSelfCollision::default());
+    let low = banner.fall_asleep();
+    let at = banner.places(&low)[0] + 0.5 * Vec3::Y;
+    let other = (grid().lying().centred(), ClothSelfCollision::default());
+    let other = (other, Transform::from_translation(at));
+    let other = banner.app.world_mut().spawn(other).id();
+    banner.tick(2);
+    assert_eq!(banner.sleeping(), 0);
+    banner.tick(40);
+    assert_eq!(banner.sleeping(), 0);
+    banner.app.world_mut().despawn(other);
+    assert_eq!(banner.fall_asleep().len(), low.len());
 }
 
 /// With layers, the pole lowers the upper piece onto the one that sleeps, which wakes before they touch.

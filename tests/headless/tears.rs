@@ -471,14 +471,15 @@ fn a_tear_runs_from_its_ends() {
     }
 }
 
-/// A cloth from which faces are torn out, one in a tick. Returns how long a tick of it takes (ms): whole, and torn; then the median of how much
-/// longer the ticks that tear take, and the most. `is_ahead` builds them in the background, in the time between two frames.
-fn times_of_tears(side: u32, is_mesh: bool, is_ahead: bool) -> [f64; 4] {
-    let ms = |app: &mut App, ticks: usize| {
-        let start = Instant::now();
-        tick(app, ticks);
-        1000.0 * start.elapsed().as_secs_f64() / ticks as f64
-    };
+/// How long a tick takes on average (ms).
+fn ms(app: &mut App, ticks: usize) -> f64 {
+    let start = Instant::now();
+    tick(app, ticks);
+    1000.0 * start.elapsed().as_secs_f64() / ticks as f64
+}
+
+/// A cloth of 1.6 m that hangs, and may be torn.
+fn hung(side: u32, is_mesh: bool) -> (App, Entity) {
     let spacing = 1.6 / (side - 1) as f32;
     let cloth = match is_mesh {
         false => Cloth::new(side, side, spacing),
@@ -488,28 +489,69 @@ fn times_of_tears(side: u32, is_mesh: bool, is_ahead: bool) -> [f64; 4] {
     let parts = (cloth, top(), ClothTears::default());
     let cloth = app.world_mut().spawn(parts).id();
     tick(&mut app, 10);
+    (app, cloth)
+}
+
+/// The time between two frames.
+fn pause() -> Duration {
+    Duration::from_millis(if is_long() { 60 } else { 5 })
+}
+
+/// Tears a face of the whole surface out, and returns how long the next tick takes (ms). `is_ahead` builds its surface in the background,
+/// in the time between two frames.
+fn tear_out(app: &mut App, cloth: Entity, whole: &Surface, face: usize, is_ahead: bool) -> f64 {
+    let count = surface(app, cloth).len();
+    change::<ClothTears>(app, cloth, |tears| {
+        tears.tear_out(whole, whole.triangles()[face]);
+    });
+    if is_ahead {
+        app.world_mut().run_schedule(Last);
+        thread::sleep(pause());
+    }
+    let opens = ms(app, 1);
+    assert!(surface(app, cloth).len() > count);
+    opens
+}
+
+fn median(mut of: Vec<f64>) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[of.len() / 2]
+}
+
+/// A cloth from which faces are torn out, one in a tick. Returns how long a tick of it takes (ms): whole, and torn; then the median of how much
+/// longer the ticks that tear take, and the most.
+fn times_of_tears(side: u32, is_mesh: bool, is_ahead: bool) -> [f64; 4] {
+    let (mut app, cloth) = hung(side, is_mesh);
     let whole = ms(&mut app, 20);
     let untorn = surface(&app, cloth).clone();
-    let (faces, mut count) = (untorn.triangles(), untorn.len());
-    let mut opens: Vec<f64> = (0..11)
-        .map(|number| {
-            let face = faces[faces.len() / 2 + 5 * number];
-            change::<ClothTears>(&mut app, cloth, |tears| {
-                tears.tear_out(&untorn, face);
-            });
-            if is_ahead {
-                app.world_mut().run_schedule(Last);
-                thread::sleep(Duration::from_millis(if is_long() { 60 } else { 5 }));
-            }
-            let opens = ms(&mut app, 1);
-            assert!(surface(&app, cloth).len() > count);
-            count = surface(&app, cloth).len();
-            opens
-        })
+    let middle = untorn.triangles().len() / 2;
+    let opens: Vec<f64> = (0..11)
+        .map(|number| tear_out(&mut app, cloth, &untorn, middle + 5 * number, is_ahead))
         .collect();
-    opens.sort_by(f64::total_cmp);
     let torn = ms(&mut app, 20);
-    [whole, torn, opens[5] - torn, opens[10] - torn]
+    let most = opens.iter().copied().fold(0.0, f64::max);
+    [whole, torn, median(opens) - torn, most - torn]
+}
+
+/// How long a tick takes (ms), in the median, each after a pause: of a whole cloth; of one that tears in each, anywhere; and of the same one,
+/// once it tears no more.
+fn times_of_tearing(side: u32, is_mesh: bool) -> [f64; 3] {
+    let (mut app, cloth) = hung(side, is_mesh);
+    let untorn = surface(&app, cloth).clone();
+    let faces = untorn.triangles().len();
+    let unchanged = |app: &mut App| {
+        let ticks = (0..20).map(|_| {
+            thread::sleep(pause());
+            ms(app, 1)
+        });
+        median(ticks.collect())
+    };
+    let whole = unchanged(&mut app);
+    let tears = (0..40)
+        .map(|number| tear_out(&mut app, cloth, &untorn, (617 * number + 300) % faces, true))
+        .skip(20);
+    let tears = median(tears.collect());
+    [whole, tears, unchanged(&mut app)]
 }
 
 /// A tear opens in cloth of any size in the tick after it is listed. How long that takes, with `--nocapture`; of 64², where tests run at
@@ -530,6 +572,10 @@ fn a_tear_opens_in_cloth_of_any_size() {
                 at_once[3],
                 ahead[2],
                 ahead[3],
+            );
+            let [whole, tears, torn] = times_of_tearing(side, is_mesh);
+            println!(
+                "    after a pause: {whole:.2} ms, of one that tears in each tick {tears:.2}, once it tears no more {torn:.2}"
             );
         }
     }

@@ -150,25 +150,27 @@ impl ClothParticles {
         parents: &[u32],
         is_parted: bool,
     ) -> Self {
+        let slots: Vec<Slot> = self.layout.slots().collect();
+        let of_parent = |parent: &u32| slots[*parent as usize];
         let mut new = Self {
             substep: self.substep,
-            past: self.past.of_parents(self.layout, to.layout(), parents),
+            past: (self.past).of_parents(parents.iter().map(of_parent), to.layout()),
             ..Self::of_layout(to.layout())
         };
-        let mut places: Vec<Vec3> = parents
-            .iter()
-            .map(|parent| self.position_at(*parent as usize))
-            .collect();
-        if is_parted {
-            places = to.parted(&places, |particle| parents[particle as usize]);
-        }
         for ((index, parent), slot) in parents.iter().enumerate().zip(new.layout.slots()) {
-            let (parent, old) = (*parent as usize, self.layout.slot_of(*parent as usize));
+            let old = of_parent(parent);
             let (was, block) = (&self.blocks[old.block], &mut new.blocks[slot.block]);
-            block.set_position(slot.lane, places[index]);
+            block.set_position(slot.lane, was.position(old.lane));
             block.set_displacement(slot.lane, was.displacement(old.lane));
-            let share = from.area_of(parent) / to.area_of(index);
+            let share = from.area_of(*parent as usize) / to.area_of(index);
             block.set_inverse_mass(slot.lane, was.inverse_mass(old.lane) * share);
+        }
+        if is_parted {
+            let places: Vec<Vec3> = new.positions().collect();
+            let places = to.parted(&places, |particle| parents[particle as usize]);
+            for (place, slot) in places.into_iter().zip(new.layout.slots()) {
+                new.blocks[slot.block].set_position(slot.lane, place);
+            }
         }
         new
     }

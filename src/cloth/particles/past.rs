@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 
 use crate::cloth::arrays::MapInline;
-use crate::cloth::lanes::{Block, LANES, Lanes, Layout};
+use crate::cloth::lanes::{Block, LANES, Lanes, Layout, Slot};
 
 /// The displacements of eight particles in the two sub-steps before the last (m): x, y and z of the later one, then of
 /// the earlier one.
@@ -182,12 +182,11 @@ impl Past {
     }
 
     /// The same for other particles, each with the past of its parent.
-    pub fn of_parents(&self, from: Layout, to: Layout, parents: &[u32]) -> Self {
+    pub fn of_parents(&self, parents: impl Iterator<Item = Slot>, to: Layout) -> Self {
         let mut blocks = Vec::new();
         if !self.blocks.is_empty() {
             blocks.resize(to.blocks(), Earlier::NONE);
-            for (parent, slot) in parents.iter().zip(to.slots()) {
-                let old = from.slot_of(*parent as usize);
+            for (old, slot) in parents.zip(to.slots()) {
                 for axis in 0..6 {
                     blocks[slot.block].0[axis][slot.lane] =
                         self.blocks[old.block].0[axis][old.lane];

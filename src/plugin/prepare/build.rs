@@ -1,5 +1,7 @@
 //! Builds cloths that are new or whose components have changed.
 
+use std::sync::Arc;
+
 use bevy::{ecs::change_detection::Mut, math::Vec3};
 
 use super::{
@@ -11,7 +13,9 @@ use super::{
 };
 use crate::{
     cloth::{ClothError, ClothParticles, ClothTears, DensityFactors, MaterialFactors, Surface},
-    plugin::state::{BuiltFrom, ClothBuilt, ClothState, FailedBuild, Recipe, Shared, SharedParts},
+    plugin::state::{
+        BuiltFrom, ClothBuilt, ClothState, FailedBuild, KnownShape, Recipe, Shared, SharedParts,
+    },
     solver::{TickStep, TimeOrder},
 };
 
@@ -89,7 +93,7 @@ fn is_built(wanted: &BuildInputs, built: &mut ClothBuilt) -> bool {
     // A mesh of the game's is long to compare with.
     if from.changed != wanted.changed {
         let is_same =
-            from.unevenness == wanted.cloth.unevenness && recipe.shape == wanted.cloth.shape;
+            from.unevenness == wanted.cloth.unevenness && *recipe.shape.0 == wanted.cloth.shape;
         if !is_same {
             return false;
         }
@@ -115,7 +119,7 @@ fn build_new(
     cloth.validate()?;
     wanted.check_material()?;
     let recipe = Recipe {
-        shape: cloth.shape.clone(),
+        shape: KnownShape(Arc::new(cloth.shape.clone())),
         scale: scale_of(wanted),
         source: wanted.source,
         grain: wanted.grain.map(|(grain, _)| grain.clone()),
@@ -151,7 +155,7 @@ fn build_new(
         state.detach();
         **particles = new;
     }
-    built.solver = shared.solver.clone();
+    built.solver = shared.new_solver();
     built.forget_tethers();
     built.shared = shared;
     built.noticed.is_due = true;
@@ -235,7 +239,7 @@ fn resampled(
         ..TickStep::default()
     };
     resample((particles, from), (&mut new, to), |new| {
-        shared.solver.clone().advance(new, step, &[], |_, _| false);
+        shared.new_solver().advance(new, step, &[], |_, _| false);
     })?;
     Ok(Some(new))
 }

@@ -47,7 +47,7 @@ pub(super) fn follow_grain(
 /// Takes over the springs of the same particles.
 fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothState) {
     built.shared = shared;
-    let mut solver = built.shared.solver.clone();
+    let mut solver = built.shared.new_solver();
     solver.take_tethers_of(&mut built.solver);
     built.solver = solver;
     // The stretch that bounds rely on is measured over other springs now.

@@ -111,7 +111,7 @@ pub(super) fn follow_tears(
     hold_parts(surface, &parents, state);
     state.pose.take_parts(&parents);
     state.creases = creases_of_torn(&before, surface, &state.creases);
-    let solver = mem::replace(&mut built.solver, shared.solver.clone());
+    let solver = mem::replace(&mut built.solver, shared.new_solver());
     built.forget_tethers();
     let old = (solver, mem::replace(&mut built.shared, shared));
     // To free their memory takes long.

@@ -55,7 +55,7 @@ impl BuildRequest {
         };
         let factors = self.factors(&surface)?;
         let before = self.before.as_deref();
-        let shared = Shared::new(
+        let mut shared = Shared::new(
             Threads::This,
             self.recipe,
             &self.material,
@@ -64,15 +64,7 @@ impl BuildRequest {
             alike,
             before,
         );
-        // The first tick needs them.
-        shared.surface.fans();
-        shared.surface.pieces_of();
-        if shared.surface.as_grid().is_none() {
-            shared.surface.face_widths();
-        }
-        if before.is_none_or(Shared::has_sheet) {
-            shared.sheet();
-        }
+        shared.make_ready(before.is_none_or(Shared::has_sheet));
         Ok(shared)
     }
 }

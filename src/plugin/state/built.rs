@@ -232,6 +232,10 @@ impl ClothBuilt {
 
     /// Takes over masses and pins of particles that the game wrote.
     pub(crate) fn refresh_masses(&mut self, particles: &ClothParticles) {
+        if self.tethered.is_none() {
+            // The next tethers do.
+            return;
+        }
         self.masses = particles.free_masses();
         if !pinned(particles).eq(self.pinned.iter().copied()) {
             self.forget_tethers();
@@ -307,7 +311,10 @@ fn pinned(particles: &ClothParticles) -> impl Iterator<Item = u32> + '_ {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{recipe::Recipe, shared_parts::SharedParts},
+        super::{
+            recipe::{KnownShape, Recipe},
+            shared_parts::SharedParts,
+        },
         *,
     };
     use crate::cloth::{Cloth, ClothFactor, ClothMaterialMap, ClothTears};
@@ -317,7 +324,7 @@ mod tests {
             grain: None,
             tears: ClothTears::default(),
             as_mesh: false,
-            shape: cloth.shape.clone(),
+            shape: KnownShape(Arc::new(cloth.shape.clone())),
             scale: Vec3::ONE,
             source: None,
         };

@@ -37,7 +37,7 @@ pub use memory::ClothState;
 pub(crate) use notices::{Notice, Notices, log_notices};
 pub(crate) use parts::{ClothParts, OwnParts};
 pub(crate) use pose::{Pose, SkinLimits};
-pub(crate) use recipe::Recipe;
+pub(crate) use recipe::{KnownShape, Recipe};
 pub(crate) use resting::RestsOn;
 pub use scratch::ClothScratch;
 pub(crate) use search::BroadPhaseBounds;

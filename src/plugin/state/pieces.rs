@@ -38,7 +38,7 @@ pub(crate) struct Pieces {
     /// The piece of each particle. Empty while nothing is known of them, or there is only one.
     of_particle: Vec<u32>,
     all: Vec<Piece>,
-    /// Where each particle was when its piece was last seen to move (m).
+    /// Where each particle was in the tick after its piece was last seen to move (m).
     origin: Vec<Vec3>,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Piece {
     /// Whether it has left its place in this tick, or is moved by pins.
     #[cfg_attr(feature = "serialize", serde(skip))]
     moves: bool,
-    /// The least and the greatest corner of its box (m).
+    /// The least and the greatest corner of its box (m), where one of them may sleep.
     #[cfg_attr(feature = "serialize", serde(skip))]
     corners: [Vec3; 2],
     is_asleep: bool,
@@ -127,27 +127,23 @@ impl Pieces {
             self.origin.clear();
             self.origin.extend(particles.positions());
         }
-        for piece in &mut self.all {
-            piece.moves = false;
-            piece.corners = [Vec3::MAX, Vec3::MIN];
-        }
-        let of = |particle: usize| self.of_particle[particle] as usize;
-        for (particle, place) in particles.positions().enumerate() {
-            let piece = &mut self.all[of(particle)];
-            let is_near = place.distance_squared(self.origin[particle]) <= limits.reach.powi(2);
-            // NaN is not near. One that sleeps is held, however near it has to be from now on.
-            piece.moves |= !is_near && !piece.is_asleep;
-            let [low, high] = piece.corners;
-            piece.corners = [low.min(place), high.max(place)];
-        }
+        self.all.iter_mut().for_each(|piece| piece.moves = false);
         for pin in pins {
             if let Some(piece) = self.of_particle.get(pin.particle as usize) {
                 self.all[*piece as usize].moves = true;
             }
         }
-        for (particle, place) in particles.positions().enumerate() {
-            if self.all[of(particle)].moves {
-                self.origin[particle] = place;
+        let places = self.of_particle.iter().zip(particles.positions());
+        for ((piece, place), origin) in places.zip(&mut self.origin) {
+            let piece = &mut self.all[*piece as usize];
+            // One that sleeps is held, however near it has to be from now on.
+            if piece.is_asleep {
+                continue;
+            }
+            // NaN is not near.
+            piece.moves |= !(place.distance_squared(*origin) <= limits.reach.powi(2));
+            if piece.calm == 0.0 {
+                *origin = place;
             }
         }
         for piece in &mut self.all {
@@ -155,6 +151,24 @@ impl Pieces {
             if piece.moves {
                 piece.wake();
             }
+        }
+        if self
+            .all
+            .iter()
+            .any(|piece| piece.may_sleep(limits.patience))
+        {
+            self.measure(particles);
+        }
+    }
+
+    /// Measures the box of each.
+    fn measure(&mut self, particles: &ClothParticles) {
+        for piece in &mut self.all {
+            piece.corners = [Vec3::MAX, Vec3::MIN];
+        }
+        for (piece, place) in self.of_particle.iter().zip(particles.positions()) {
+            let corners = &mut self.all[*piece as usize].corners;
+            *corners = [corners[0].min(place), corners[1].max(place)];
         }
     }
 
@@ -167,23 +181,17 @@ impl Pieces {
         mut settles: impl FnMut(&mut Piece) -> bool,
     ) {
         for at in 0..self.all.len() {
-            let Piece {
-                corners,
-                calm,
-                is_asleep,
-                ..
-            } = self.all[at];
-            if calm < patience && !is_asleep {
+            if !self.all[at].may_sleep(patience) {
                 continue;
             }
+            let Piece { corners, .. } = self.all[at];
             let is_disturbed = touching.is_some_and(|distance| {
                 let meets = |[low, high]: [Vec3; 2]| {
                     let gap = (low - corners[1]).max(corners[0] - high);
                     gap.max_element() <= distance
                 };
                 let mut others = self.all.iter();
-                let moves = |other: &Piece| !other.is_asleep && other.calm < patience;
-                others.any(|other| moves(other) && meets(other.corners))
+                others.any(|other| !other.may_sleep(patience) && meets(other.corners))
             });
             let piece = &mut self.all[at];
             if is_disturbed {
@@ -204,6 +212,11 @@ impl Piece {
     fn wake(&mut self) {
         (self.calm, self.is_asleep) = (0.0, false);
         self.rests_on.clear();
+    }
+
+    /// Whether it sleeps, or was calm for so long (s) that it may.
+    fn may_sleep(&self, patience: f32) -> bool {
+        self.is_asleep || self.calm >= patience
     }
 
     /// A ball around it: middle and radius (m).

@@ -10,7 +10,8 @@ use crate::cloth::{ClothError, ClothGrain, ClothShape, ClothTears, Surface, Tria
 /// The inputs of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Recipe {
-    pub shape: ClothShape,
+    /// Shared, as a mesh of the game's is long to copy and to compare.
+    pub shape: KnownShape,
     pub scale: Vec3,
     /// The mesh, if it is made from an asset.
     pub source: Option<Source>,
@@ -27,10 +28,10 @@ impl Recipe {
     /// # Errors
     /// Those of [`ClothShape::surface`], [`ClothGrain::apply`] and [`Surface::torn`].
     pub fn surface(&self, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
-        let surface = match self.shape {
+        let surface = match *self.shape.0 {
             #[cfg(feature = "mesh")]
             ClothShape::Mesh { weld } => Surface::of_mesh(mesh, weld, self.scale)?,
-            _ => self.shape.surface(self.scale)?,
+            _ => self.shape.0.surface(self.scale)?,
         };
         let surface = match &self.grain {
             Some(grain) => grain.apply(surface, mesh)?,
@@ -51,5 +52,15 @@ impl Recipe {
             [] if !self.as_mesh => Ok((*whole).clone()),
             edges => whole.torn(edges),
         }
+    }
+}
+
+/// A shape that many recipes share.
+#[derive(Debug, Clone)]
+pub(crate) struct KnownShape(pub Arc<ClothShape>);
+
+impl PartialEq for KnownShape {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
     }
 }

@@ -1,6 +1,6 @@
 //! Data shared by cloths that are made alike.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::{recipe::Recipe, source::Source};
 use crate::{
@@ -23,7 +23,9 @@ pub(crate) struct Shared {
     pub springs: Springs,
     pub tree: QuadTree,
     /// An unused solver, of which each cloth gets a clone.
-    pub solver: Solver,
+    solver: Solver,
+    /// The first clone, if it was made in the background.
+    spare: Mutex<Option<Solver>>,
     /// For contact of cloth with cloth: made when a cloth needs it.
     sheet: OnceLock<Arc<Sheet>>,
     /// The skinning by joints: made when a cloth has joints.
@@ -81,12 +83,36 @@ impl Shared {
             recipe: Some(recipe),
             stiffnesses,
             solver,
+            spare: Mutex::default(),
             surface,
             springs,
             tree,
             sheet: sheet.cloned().map_or_else(OnceLock::new, OnceLock::from),
             skinning: skinning.cloned().map_or_else(OnceLock::new, OnceLock::from),
         }
+    }
+
+    /// A solver for a cloth.
+    pub fn new_solver(&self) -> Solver {
+        let spare = self
+            .spare
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
+        spare.unwrap_or_else(|| self.solver.clone())
+    }
+
+    /// Makes now what the first tick of a cloth needs.
+    pub fn make_ready(&mut self, has_sheet: bool) {
+        self.surface.fans();
+        self.surface.pieces_of();
+        if self.surface.as_grid().is_none() {
+            self.surface.face_widths();
+        }
+        if has_sheet {
+            self.sheet();
+        }
+        self.spare = Mutex::new(Some(self.solver.clone()));
     }
 
     /// Whether its tree is that of springs with diagonals, or without: those of a grid change its bounds.
@@ -189,7 +215,10 @@ impl Stiffness {
 pub(super) mod tests {
     use bevy::math::Vec3;
 
-    use super::{super::shared_parts::SharedParts, *};
+    use super::{
+        super::{recipe::KnownShape, shared_parts::SharedParts},
+        *,
+    };
     use crate::{
         cloth::{Cloth, ClothParticles, ClothShape, ClothTears, ClothWeft, SpringStorage},
         meshes::irregular,
@@ -203,7 +232,7 @@ pub(super) mod tests {
             grain: None,
             tears: ClothTears::default(),
             as_mesh,
-            shape: shape.clone(),
+            shape: KnownShape(Arc::new(shape.clone())),
             scale: Vec3::ONE,
             source: None,
         }
@@ -377,7 +406,7 @@ pub(super) mod tests {
         let at_rest = ClothParticles::at_rest(&shared.surface, material);
         let mut particles = at_rest.expect("a material");
         particles.pin(0);
-        let mut solver = shared.solver.clone();
+        let mut solver = shared.new_solver();
         let step = TickStep {
             seconds: 1.0 / 64.0,
             substeps: 8,

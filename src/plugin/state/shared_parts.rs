@@ -77,7 +77,7 @@ impl SharedParts {
     ) -> Result<Option<Arc<Shared>>, ClothError> {
         let recipe = &request.recipe;
         // NaN is unlike itself.
-        if *recipe != recipe.clone() {
+        if *recipe != recipe.clone() || *recipe.shape.0 != (*recipe.shape.0).clone() {
             return Ok(None);
         }
         if let Some(built) = self.builds.take(recipe)? {

@@ -93,16 +93,18 @@ impl TornPlate {
     /// Adds the forces' share to displacements, with this weight (s²): of the forces where this part of the displacements leads to.
     pub fn apply(&mut self, blocks: &mut [Block], part: f32, weight: f32, kernels: &Kernels) {
         for moment in &mut self.moments {
-            let [place, moved] = [Block::position, Block::displacement].map(|of| {
-                let at = |slot: &Slot| of(&blocks[slot.block], slot.lane);
-                let first = at(&moment.parts[0].0);
-                let others = moment.parts[1..].iter();
+            let at = |slot: &Slot| {
+                let block = &blocks[slot.block];
+                (block.position(slot.lane), block.displacement(slot.lane))
+            };
+            let (first, first_moved) = at(&moment.parts[0].0);
+            let mut bent = Vec3::ZERO;
+            for (slot, share) in &moment.parts[1..] {
+                let (place, moved) = at(slot);
                 // Next to each other, so that no digit is lost.
-                others
-                    .map(|(slot, part)| *part * (at(slot) - first))
-                    .sum::<Vec3>()
-            });
-            moment.value = moment.stiffness * (place + part * moved);
+                bent += *share * ((place - first) + part * (moved - first_moved));
+            }
+            moment.value = moment.stiffness * bent;
         }
         (self.push).apply(&mut blocks[..self.blocks], part, weight, kernels);
         for moment in &self.moments {
