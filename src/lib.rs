@@ -39,7 +39,7 @@ pub mod prelude {
     pub use crate::cloth::{
         Cloth, ClothBackstop, ClothError, ClothFactor, ClothGrain, ClothMaterial, ClothMaterialMap,
         ClothPaint, ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothStiffening,
-        ClothTearing, ClothTears, ClothWeft, Corner, Pin, Pins, RopeShape, Surface,
+        ClothTearing, ClothTears, ClothWeft, Corner, Pin, Pins, RopePath, RopeShape, Surface,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,

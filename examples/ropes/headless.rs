@@ -74,19 +74,21 @@ fn measure(
     let places = |(_, all, frame): (&Cloth, &ClothParticles, &ClothFrame)| -> Vec<Vec3> {
         all.positions().map(|place| frame.to_world(place)).collect()
     };
-    let is_rope = |cloth: &Cloth| matches!(cloth.shape, ClothShape::Rope(_));
-    let sail = cloths.iter().find(|(cloth, ..)| !is_rope(cloth));
+    let length = |places: &[Vec3]| -> f32 {
+        let parts = places.windows(2);
+        parts.map(|ends| ends[0].distance(ends[1])).sum()
+    };
+    let is_sail = |cloth: &Cloth| matches!(cloth.shape, ClothShape::Grid(_));
+    let sail = cloths.iter().find(|(cloth, ..)| is_sail(cloth));
     let sail = sail.map_or(Vec::new(), places);
     for (cloth, all, frame) in &cloths {
-        let ClothShape::Rope(rope) = &cloth.shape else {
-            continue;
+        let at_rest = match &cloth.shape {
+            ClothShape::Rope(rope) => rope.spacing * (rope.particles - 1) as f32,
+            ClothShape::Path(path) => length(&path.points),
+            _ => continue,
         };
         let places = places((cloth, all, frame));
-        let length: f32 = places
-            .windows(2)
-            .map(|ends| ends[0].distance(ends[1]))
-            .sum();
-        let longer = length / (rope.spacing * (places.len() - 1) as f32) - 1.0;
+        let longer = length(&places) / at_rest - 1.0;
         own.stretch_percent = own.stretch_percent.max(100.0 * longer);
         // The slings' last particles are pinned.
         if let Some(end) = places.last()

@@ -148,30 +148,24 @@ fn spawn_sail(mut shop: Workshop) {
 }
 
 /// The plank, in two slings whose ends hang from the bar.
-fn spawn_swing(mut shop: Workshop) -> Result {
+fn spawn_swing(mut shop: Workshop) {
     let paint = rope_paint(&mut shop);
-    let (width, height) = (2.0 * PLANK.z + 2.0 * ROPE, BAR - SEAT);
-    let particles = ((width + 2.0 * height) / SPACING).round() as u32 + 1;
-    let rope = Cloth::rope(
-        particles,
-        (width + 2.0 * height) / (particles - 1) as f32,
-        ROPE,
-    );
-    let ends = [0, particles as usize - 1].map(Pin::Index);
     // Down, across below the plank, and up.
-    let mut laid = ClothParticles::at_rest(&rope.surface(Vec3::ONE)?, &hemp())?;
-    for index in 0..laid.len() {
-        let along = (width + 2.0 * height) * index as f32 / (laid.len() - 1) as f32;
-        let down = along.min(width + 2.0 * height - along).min(height);
-        let across = (along - height).clamp(0.0, width) - width / 2.0;
-        laid.set_position(index, Vec3::new(0.0, -down, across))?;
-    }
+    let at = |y: f32, z: f32| Vec3::new(0.0, y - BAR, z);
+    let side = PLANK.z + ROPE;
+    let path = [
+        at(BAR, -side),
+        at(SEAT, -side),
+        at(SEAT, side),
+        at(BAR, side),
+    ];
+    let rope = Cloth::rope_along(path, SPACING, ROPE);
+    let ends = Pin::at_rest(|place| place.y > -1.0e-3);
     for x in [-SLINGS, SLINGS] {
         shop.commands.spawn((
             Name::new("sling"),
             rope.clone(),
-            laid.clone(),
-            Pins::new(ends.clone()),
+            Pins::new([ends.clone()]),
             hemp(),
             // They carry many times their own weight.
             ClothSettings::substeps(90),
@@ -197,5 +191,4 @@ fn spawn_swing(mut shop: Workshop) -> Result {
             Visibility::default(),
         ))
         .with_child((plank, wood));
-    Ok(())
 }

@@ -38,7 +38,7 @@ pub use particle_id::ParticleId;
 pub use particles::ClothParticles;
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
-pub use rope::RopeShape;
+pub use rope::{RopePath, RopeShape};
 pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
 #[doc(hidden)]
 pub use spring::{Spring, SpringKind};

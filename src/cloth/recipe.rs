@@ -7,6 +7,8 @@ use bevy::{
     transform::components::Transform,
 };
 
+#[cfg(feature = "mesh")]
+use super::surface::path_of_asset;
 use super::{
     error::ClothError,
     grid::{ClothGrid, ClothPlane, GridShape},
@@ -14,7 +16,7 @@ use super::{
     particles::ClothParticles,
     pins::Pins,
     presence::log_unsimulated,
-    rope::RopeShape,
+    rope::{RopePath, RopeShape},
     surface::{Surface, TriangleMesh},
 };
 
@@ -77,6 +79,8 @@ pub enum ClothShape {
     Grid(GridShape),
     /// A row of particles without faces.
     Rope(RopeShape),
+    /// The same, along a path.
+    Path(RopePath),
     /// Triangles provided by the game.
     Triangles {
         /// Vertices in the entity's frame (m), before the transform's scale.
@@ -107,6 +111,7 @@ impl ClothShape {
         match self {
             Self::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
             Self::Rope(rope) => rope.scaled(scale).map(|grid| Surface::of_grid(&grid)),
+            Self::Path(path) => path.surface(scale),
             Self::Triangles {
                 positions,
                 triangles,
@@ -177,6 +182,37 @@ impl Cloth {
         }))
     }
 
+    /// A [rope](Self::rope) that begins along a path through `points`, in the entity's frame (m), with particles about `spacing` metres apart.
+    ///
+    /// ```
+    /// use bevy::math::Vec3;
+    /// use bevy_drape::prelude::*;
+    ///
+    /// // Up from the ground, over a beam, and down.
+    /// let points = [Vec3::ZERO, Vec3::new(0.0, 2.0, 0.0), Vec3::new(0.2, 2.0, 0.0), Vec3::new(0.2, 1.0, 0.0)];
+    /// let rope = Cloth::rope_along(points, 0.05, 0.01);
+    /// assert_eq!(rope.surface(Vec3::ONE)?.len(), 65);
+    /// # Ok::<(), bevy_drape::cloth::ClothError>(())
+    /// ```
+    pub fn rope_along(points: impl IntoIterator<Item = Vec3>, spacing: f32, radius: f32) -> Self {
+        Self::of_shape(ClothShape::Path(RopePath {
+            points: points.into_iter().collect(),
+            spacing,
+            radius,
+        }))
+    }
+
+    /// A rope [along](Self::rope_along) the edges of a mesh without faces, as modelling programs export a chain of edges: a list or a strip of
+    /// lines. It begins at the end whose vertex has the lower index.
+    ///
+    /// # Errors
+    /// [`ClothError::MeshTopology`] for a mesh that is not of lines; [`ClothError::MeshNotReadable`] and
+    /// [`ClothError::MeshWithoutPositions`]; [`ClothError::NotAChain`] for edges that do not lead from one end to the other.
+    #[cfg(feature = "mesh")]
+    pub fn rope_of(mesh: &bevy::mesh::Mesh, spacing: f32, radius: f32) -> Result<Self, ClothError> {
+        Ok(Self::rope_along(path_of_asset(mesh)?, spacing, radius))
+    }
+
     /// The mesh of the entity's `Mesh3d`. The cloth waits for the asset, and draws itself with its own copy: other
     /// users of the asset see it unchanged.
     #[cfg(feature = "mesh")]
@@ -205,7 +241,7 @@ impl Cloth {
         }
     }
 
-    /// Lays a grid out in the horizontal plane, facing up, and a rope along +x. A mesh keeps the shape of its asset.
+    /// Lays a grid out in the horizontal plane, facing up, and a rope along +x. A mesh keeps the shape of its asset, and a rope its path.
     pub const fn lying(mut self) -> Self {
         match &mut self.shape {
             ClothShape::Grid(grid) => grid.plane = ClothPlane::Lying,
@@ -215,7 +251,7 @@ impl Cloth {
         self
     }
 
-    /// Centres a grid or a rope on the entity's origin. A mesh keeps the shape of its asset.
+    /// Centres a grid or a rope on the entity's origin. A mesh keeps the shape of its asset, and a rope its path.
     pub const fn centred(mut self) -> Self {
         match &mut self.shape {
             ClothShape::Grid(grid) => grid.centred = true,

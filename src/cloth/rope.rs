@@ -8,6 +8,8 @@ use bevy::{
 use super::{
     error::ClothError,
     grid::{ClothGrid, ClothPlane, mean},
+    limits::MAX_PARTICLES,
+    surface::Surface,
 };
 
 /// The shape of a rope, before the transform's scale.
@@ -63,17 +65,95 @@ impl RopeShape {
             ClothPlane::Hanging => ([Vec3::NEG_Y, Vec3::NEG_X], scale.y),
             ClothPlane::Lying => ([Vec3::X, Vec3::Z], scale.x),
         };
-        // The single row is a border of the grid, and borders are half a spacing wide.
-        let width = 4.0 * self.radius * mean(scale);
-        let spacing = Vec2::new(self.spacing * along, width);
+        let spacing = Vec2::new(self.spacing * along, width(self.radius, scale));
         ClothGrid::new([self.particles, 1], spacing, axes, scale, self.centred)
     }
 }
 
+/// The spacing across the single row of a rope's grid: that is a border, and borders are half a spacing wide (m).
+fn width(radius: f32, scale: Vec3) -> f32 {
+    4.0 * radius * mean(scale)
+}
+
+/// The shape of a rope that begins along a path, before the transform's scale. Its particles are as far apart as [`RopeShape`]'s, as measured
+/// along the path. Like that, it is straight where nothing bends it.
+#[derive(Reflect, Debug, Default, Clone, PartialEq)]
+#[type_path = "bevy_drape"]
+#[reflect(Default, Debug, Clone, PartialEq)]
+pub struct RopePath {
+    /// Points that the path leads through, in the entity's frame (m), at least 2.
+    pub points: Vec<Vec3>,
+    /// Approximate distance between neighbouring particles along it (m): the path is divided into equal parts.
+    pub spacing: f32,
+    /// Half of its thickness (m).
+    pub radius: f32,
+}
+
+impl RopePath {
+    /// The surface under a transform's `scale`.
+    ///
+    /// # Errors
+    /// [`ClothError::VertexNotFinite`] for the first such point; [`ClothError::Quantity`] for fewer than two points, or for a length, spacing
+    /// or radius that is not positive and finite; [`ClothError::GridTooLarge`] for too many particles.
+    pub(super) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
+        let count = self.points.len() as f32;
+        ClothError::check(count, |n| n >= 2.0, "points of a rope's path", "at least 2")?;
+        if let Some(vertex) = self.points.iter().position(|point| !point.is_finite()) {
+            let position = self.points[vertex];
+            return Err(ClothError::VertexNotFinite { vertex, position });
+        }
+        let is_length = |length: f32| length > 0.0 && length.is_finite();
+        for (length, name) in [
+            (self.spacing, "spacing of a rope (m)"),
+            (self.radius, "radius of a rope (m)"),
+            (lengths(&self.points).1, "length of a rope's path (m)"),
+        ] {
+            ClothError::check(length, is_length, name, "positive and finite")?;
+        }
+        let parts = (lengths(&self.points).1 / self.spacing).round();
+        let parts = parts.clamp(1.0, MAX_PARTICLES as f32) as u32;
+        let points: Vec<Vec3> = self.points.iter().map(|point| scale * *point).collect();
+        let (lengths, length) = lengths(&points);
+        let spacing = Vec2::new(length / parts as f32, width(self.radius, scale));
+        let grid = ClothGrid::new([parts + 1, 1], spacing, [Vec3::X, Vec3::Z], scale, false)?;
+        let mut at = 0;
+        let place = |part: u32| {
+            let along = length * (part as f32 / parts as f32);
+            while at + 2 < points.len() && lengths[at + 1] < along {
+                at += 1;
+            }
+            let of_side = (along - lengths[at]) / (lengths[at + 1] - lengths[at]);
+            // A side without a length is where both of its ends are.
+            let of_side = if of_side.is_finite() {
+                of_side.clamp(0.0, 1.0)
+            } else {
+                1.0
+            };
+            points[at].lerp(points[at + 1], of_side)
+        };
+        let places = (0..=parts).map(place).collect();
+        Ok(Surface::of_rope(&grid, places))
+    }
+}
+
+/// How far each point of a path is from the first, along the path, and the last of them (m).
+fn lengths(points: &[Vec3]) -> (Vec<f32>, f32) {
+    let mut length = 0.0;
+    let sides = points.windows(2).map(|side| {
+        length += f64::from(side[0].distance(side[1]));
+        length as f32
+    });
+    let all: Vec<f32> = [0.0].into_iter().chain(sides).collect();
+    let last = all.last().copied().unwrap_or(0.0);
+    (all, last)
+}
+
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::TAU;
+
     use super::*;
-    use crate::cloth::{Cloth, ClothMaterial, ClothParticles, Surface};
+    use crate::cloth::{Cloth, ClothMaterial, ClothParticles};
 
     #[test]
     fn hangs_down_or_lies_along_x() {
@@ -109,6 +189,55 @@ mod tests {
             assert!((surface.area() - 0.36).abs() < 1.0e-5);
             assert!(surface.triangles().is_empty());
         }
+    }
+
+    /// Three quarters of a circle of 64 sides, with points twice: particles are on it, and as far apart as a chord is of an arc.
+    #[test]
+    fn follows_a_path() {
+        let points =
+            (0..=48).map(|side| Vec3::from((Vec2::from_angle(side as f32 * TAU / 64.0), 0.0)));
+        let points = points.flat_map(|point| [point, point]);
+        let rope = Cloth::rope_along(points, 0.1, 0.01);
+        let surface = rope.surface(Vec3::new(2.0, 2.0, -2.0)).expect("a rope");
+        let grid = surface.as_grid().expect("one row");
+        let side = 2.0 * (TAU / 128.0).sin();
+        assert_eq!(grid.columns(), (48.0 * side / 0.1).round() as u32 + 1);
+        let spacing = 2.0 * 48.0 * side / (grid.columns() - 1) as f32;
+        assert!((grid.spacing().x / spacing - 1.0).abs() < 1.0e-5);
+        let places = surface.rest_positions();
+        for place in places {
+            // A side's middle is nearest to the centre.
+            assert!((1.997..=2.0 + 1.0e-5).contains(&place.length()), "{place}");
+        }
+        for neighbours in places.windows(2) {
+            // Where a path turns by 2π ⁄ 64, a chord is shorter by at most 1 − cos(π ⁄ 64).
+            let distance = neighbours[0].distance(neighbours[1]) / spacing;
+            assert!((0.9987..1.0 + 1.0e-5).contains(&distance), "{distance}");
+        }
+        assert!(places[0].distance(2.0 * Vec3::X) < 1.0e-5);
+        let last = places.last().expect("an end");
+        assert!(last.distance(-2.0 * Vec3::Y) < 1.0e-4, "{last}");
+    }
+
+    #[test]
+    fn refuses_what_is_no_path() {
+        let refused = |points: &[Vec3], spacing| {
+            let rope = Cloth::rope_along(points.iter().copied(), spacing, 0.01);
+            rope.surface(Vec3::ONE).expect_err("no rope")
+        };
+        let is_quantity = |error| matches!(error, ClothError::Quantity { .. });
+        assert!(is_quantity(refused(&[], 0.1)));
+        assert!(is_quantity(refused(&[Vec3::ONE], 0.1)));
+        assert!(is_quantity(refused(&[Vec3::ONE; 3], 0.1)));
+        assert!(is_quantity(refused(&[Vec3::ZERO, Vec3::X], f32::NAN)));
+        assert!(is_quantity(refused(&[Vec3::ZERO, Vec3::MAX], 1.0e30)));
+        let error = refused(&[Vec3::ZERO, Vec3::NAN], 0.1);
+        assert!(matches!(
+            error,
+            ClothError::VertexNotFinite { vertex: 1, .. }
+        ));
+        let error = refused(&[Vec3::ZERO, Vec3::X], 1.0e-8);
+        assert!(matches!(error, ClothError::GridTooLarge { .. }), "{error}");
     }
 
     #[test]

@@ -38,6 +38,7 @@ pub enum Core {
 impl Core {
     /// Vector from the nearest point of the core to `point` (m), in `f64`. In a half-space it points inwards, and its
     /// length is the depth.
+    #[inline(always)]
     fn offset(&self, point: Vec3) -> DVec3 {
         let point = point.as_dvec3();
         match *self {
@@ -65,7 +66,7 @@ impl Core {
     }
 
     /// Distance of `point` from the core (m), in `f64`: 0 inside, negative inside a half-space.
-    #[inline]
+    #[inline(always)]
     pub fn distance(&self, point: Vec3) -> f64 {
         let offset = self.offset(point);
         match self {
@@ -75,6 +76,7 @@ impl Core {
     }
 
     /// Length (m) that determines the rounding errors of a distance from this core.
+    #[inline(always)]
     pub(crate) fn size(&self) -> f32 {
         match self {
             Self::Point(_) | Self::HalfSpace { .. } => 0.0,
@@ -83,29 +85,21 @@ impl Core {
         }
     }
 
-    /// Whether `point` may be within `reach` (m) of the core. Never false if it is.
+    /// Whether `point` may be within `reach` (m) of the core. Never false if it is. In a loop over points, what depends on the core alone is
+    /// found once.
     #[inline(always)]
     pub(crate) fn may_reach(&self, point: Vec3, reach: f32) -> bool {
-        match self {
-            Self::Point(centre) => {
-                let reach = reach * ROUNDING;
-                point.distance_squared(*centre) <= reach * reach
-            }
-            _ => self.may_reach_beyond(point, reach),
-        }
-    }
-
-    #[inline]
-    fn may_reach_beyond(&self, point: Vec3, reach: f32) -> bool {
         let reach = reach * ROUNDING + self.size() * 1.0e-5;
         let square = match *self {
             Self::Point(centre) => point.distance_squared(centre),
             Self::Segment([a, b]) => {
                 let (offset, along) = (point - a, b - a);
-                let t = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
-                // A segment of zero length is its first end.
-                let nearest = if t > 0.0 { along * t } else { Vec3::ZERO };
-                offset.distance_squared(nearest)
+                let square = along.length_squared();
+                // A segment without a length is its first end.
+                let is_long = square > f32::MIN_POSITIVE;
+                let inverse = if is_long { 1.0 / square } else { 0.0 };
+                let t = (offset.dot(along) * inverse).clamp(0.0, 1.0);
+                offset.distance_squared(along * t)
             }
             Self::Cuboid { pose, half_size } => {
                 let local = pose.rotation.inverse() * (point - Vec3::from(pose.translation));
@@ -247,6 +241,7 @@ impl Probe {
 
     /// Equation (4): whether the distance of a particle at `position` from the core is less than the sum of both radii.
     /// In `f64`, so that all callers get the same result.
+    #[inline]
     pub fn meets(&self, position: Vec3) -> bool {
         self.core.distance(position) < self.reach()
     }

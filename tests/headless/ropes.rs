@@ -1,6 +1,9 @@
 //! Ropes: hung, laid over things, tied to cloth, and what they carry.
 
-use bevy::prelude::*;
+use bevy::{
+    mesh::{Indices, PrimitiveTopology},
+    prelude::*,
+};
 use bevy_drape::{plugin::ClothBuilt, prelude::*};
 use bevy_rapier3d::prelude::{Collider, ColliderMassProperties, RigidBody};
 
@@ -329,6 +332,96 @@ fn it_is_refined_and_taken() {
     assert!(held.x.abs() < 0.02, "{held}");
 }
 
+/// Along a path with a sharp turn, it hangs between its ends as a chain does: the path is forgotten.
+#[test]
+fn one_along_a_path_hangs_as_a_chain_does() {
+    let points = [Vec3::ZERO, Vec3::new(0.6, 0.8, 0.0), Vec3::X * 1.2];
+    let rope = Cloth::rope_along(points, 0.03, 0.01);
+    let between = Pins::new([Pin::at_rest(|place| place.y < 1.0e-3)]);
+    let mut app = app();
+    let rope = spawn(&mut app, (rope, between, damped()));
+    let begin = places(&app, rope);
+    assert_eq!(begin.len(), 68);
+    assert!(begin.iter().any(|place| place.y > 0.75), "{begin:?}");
+    tick(&mut app, 1500);
+    let all = places(&app, rope);
+    let sag = all.iter().map(|place| -place.y).fold(0.0, f32::max);
+    let [radius, truth] = catenary(2.0, 1.2);
+    // As in the test above, and the corner may cut off half of a spacing.
+    let spacing = 2.0 / 67.0_f32;
+    let lowest = (spacing * spacing / (8.0 * radius)).min(2.0e-3 * truth);
+    let tolerance = truth * (1.0 / 67.0_f32).powi(2) + lowest;
+    assert!((sag - truth).abs() < tolerance, "{sag} m, {truth} m");
+    assert!((length(&all) - 2.0).abs() < 2.0e-3);
+}
+
+/// The edges of a mesh without faces, in any order and direction. It begins at the end with the lower index.
+#[test]
+fn edges_of_a_mesh_are_a_rope() {
+    let place = |vertex: usize| Vec3::new(0.1 * vertex as f32, (vertex % 2) as f32, 0.0);
+    // Where each vertex of the mesh is along the chain.
+    let order = [4, 0, 6, 2, 5, 1, 3];
+    let mesh = |topology, indices: &[u32]| {
+        let places: Vec<Vec3> = order.map(place).to_vec();
+        Mesh::new(topology, default())
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, places)
+            .with_inserted_indices(Indices::U32(indices.to_vec()))
+    };
+    let vertex = |at: usize| {
+        order
+            .iter()
+            .position(|of| *of == at)
+            .expect("each is there") as u32
+    };
+    let chain: Vec<u32> = (0..7).map(vertex).collect();
+    let list: Vec<u32> = [2, 5, 0, 3, 1, 4]
+        .into_iter()
+        .flat_map(|at| [chain[at + at % 2], chain[at + 1 - at % 2]])
+        .collect();
+    let points = |mesh: &Mesh| match Cloth::rope_of(mesh, 0.1, 0.01).map(|rope| rope.shape) {
+        Ok(ClothShape::Path(path)) => Ok(path.points),
+        Ok(other) => panic!("{other:?}"),
+        Err(error) => Err(error),
+    };
+    let expected: Vec<Vec3> = (0..7).map(place).collect();
+    for mesh in [
+        mesh(PrimitiveTopology::LineList, &list),
+        mesh(PrimitiveTopology::LineStrip, &chain),
+    ] {
+        let mut found = points(&mesh).expect("a chain");
+        // Its ends are the vertices 1 and 2.
+        assert_eq!(found[0], place(0));
+        assert_eq!(found, expected);
+        found.reverse();
+        assert_ne!(found, expected);
+    }
+    let refused = |indices: &[u32]| points(&mesh(PrimitiveTopology::LineList, indices));
+    let no_chain = |vertex, edges| Err(ClothError::NotAChain { vertex, edges });
+    // A branch, a ring, a chain beside a ring, a vertex without edges, one that does not exist, and no edges.
+    assert_eq!(
+        refused(&[0, 1, 1, 2, 1, 3, 3, 4, 4, 5, 5, 6]),
+        no_chain(1, 3)
+    );
+    assert_eq!(
+        refused(&[0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 0]),
+        no_chain(0, 2)
+    );
+    assert_eq!(
+        refused(&[0, 1, 1, 2, 3, 4, 4, 5, 5, 6, 6, 3]),
+        no_chain(3, 2)
+    );
+    assert_eq!(refused(&[0, 1, 1, 2, 2, 3, 3, 4, 4, 5]), no_chain(6, 0));
+    assert_eq!(refused(&[0, 1, 1, 9]), no_chain(9, 0));
+    assert_eq!(refused(&[]), no_chain(0, 0));
+    let faces = points(&mesh(PrimitiveTopology::TriangleList, &[0, 1, 2]));
+    assert!(matches!(faces, Err(ClothError::MeshTopology { .. })));
+    let empty = Mesh::new(PrimitiveTopology::LineList, default());
+    assert_eq!(points(&empty), Err(ClothError::MeshWithoutPositions));
+    let none: Vec<Vec3> = Vec::new();
+    let none = empty.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, none);
+    assert_eq!(points(&none), no_chain(0, 0));
+}
+
 /// A bad rope gets a fault that names the value, and nothing else stops.
 #[test]
 fn a_bad_rope_is_a_fault() {
@@ -338,6 +431,8 @@ fn a_bad_rope_is_a_fault() {
         Cloth::rope(1, 0.1, 0.01),
         Cloth::rope(8, 0.0, 0.01),
         Cloth::rope(8, 0.1, f32::NAN),
+        Cloth::rope_along([], 0.1, 0.01),
+        Cloth::rope_along([Vec3::ZERO, Vec3::X], 0.0, 0.01),
     ] {
         let rope = app.world_mut().spawn(wrong).id();
         tick(&mut app, 2);

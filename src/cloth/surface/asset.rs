@@ -31,19 +31,8 @@ impl TriangleMesh {
     /// lines or points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] for an incomplete
     /// triangle.
     pub fn of_asset(mesh: &Mesh) -> Result<Self, ClothError> {
-        // The renderer would soon take its vertices.
-        if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
-            return Err(ClothError::MeshNotReadable);
-        }
-        let read = |attribute: MeshVertexAttribute| match mesh.try_attribute_option(attribute) {
-            Ok(values) => Ok(values),
-            Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
-            Err(_) => Ok(None),
-        };
-        let Some(VertexAttributeValues::Float32x3(positions)) = read(Mesh::ATTRIBUTE_POSITION)?
-        else {
-            return Err(ClothError::MeshWithoutPositions);
-        };
+        let positions = positions(mesh)?;
+        let read = |attribute| attribute_of(mesh, attribute);
         let triangles = triangles(mesh, positions.len())?;
         let vectors = |values: Option<&VertexAttributeValues>| match values {
             Some(VertexAttributeValues::Float32x3(values)) => {
@@ -63,7 +52,7 @@ impl TriangleMesh {
             Some(VertexAttribute::new(attribute.name, values))
         });
         Ok(Self {
-            positions: positions.iter().copied().map(Vec3::from).collect(),
+            positions,
             triangles,
             normals: vectors(read(Mesh::ATTRIBUTE_NORMAL)?),
             uvs,
@@ -72,16 +61,96 @@ impl TriangleMesh {
     }
 }
 
+/// An attribute of a mesh, if it has it.
+///
+/// # Errors
+/// [`ClothError::MeshNotReadable`].
+fn attribute_of(
+    mesh: &Mesh,
+    attribute: MeshVertexAttribute,
+) -> Result<Option<&VertexAttributeValues>, ClothError> {
+    match mesh.try_attribute_option(attribute) {
+        Ok(values) => Ok(values),
+        Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
+        Err(_) => Ok(None),
+    }
+}
+
+/// The positions of a mesh's vertices.
+///
+/// # Errors
+/// [`ClothError::MeshNotReadable`], [`ClothError::MeshWithoutPositions`].
+fn positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
+    // The renderer would soon take its vertices.
+    if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+        return Err(ClothError::MeshNotReadable);
+    }
+    match attribute_of(mesh, Mesh::ATTRIBUTE_POSITION)? {
+        Some(VertexAttributeValues::Float32x3(positions)) => {
+            Ok(positions.iter().copied().map(Vec3::from).collect())
+        }
+        _ => Err(ClothError::MeshWithoutPositions),
+    }
+}
+
+/// The places along the edges of a mesh of lines, from the end with the lower index.
+///
+/// # Errors
+/// Those of [`Cloth::rope_of`](crate::cloth::Cloth::rope_of).
+pub(crate) fn path_of_asset(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
+    let positions = positions(mesh)?;
+    let indices = indices(mesh, positions.len())?;
+    let edges: Vec<[u32; 2]> = match mesh.primitive_topology() {
+        PrimitiveTopology::LineList => indices.as_chunks().0.to_vec(),
+        PrimitiveTopology::LineStrip => indices.array_windows().copied().collect(),
+        topology => {
+            return Err(ClothError::MeshTopology {
+                topology: format!("{topology:?}"),
+            });
+        }
+    };
+    let mut beside = vec![Vec::new(); positions.len()];
+    for [a, b] in edges {
+        for (end, other) in [(a, b), (b, a)] {
+            let vertex = end as usize;
+            (beside.get_mut(vertex))
+                .ok_or(ClothError::NotAChain { vertex, edges: 0 })?
+                .push(other);
+        }
+    }
+    let refused = |vertex: usize| ClothError::NotAChain {
+        vertex,
+        edges: beside.get(vertex).map_or(0, Vec::len),
+    };
+    if let Some(vertex) = beside
+        .iter()
+        .position(|others| !(1..=2).contains(&others.len()))
+    {
+        return Err(refused(vertex));
+    }
+    let first = beside.iter().position(|others| others.len() == 1);
+    let mut path = vec![first.ok_or_else(|| refused(0))?];
+    while let Some(next) = beside[path[path.len() - 1]]
+        .iter()
+        .map(|other| *other as usize)
+        .find(|other| path.len() < 2 || *other != path[path.len() - 2])
+    {
+        path.push(next);
+    }
+    if path.len() < positions.len() {
+        let mut is_reached = vec![false; positions.len()];
+        path.iter().for_each(|vertex| is_reached[*vertex] = true);
+        return Err(refused(is_reached.iter().position(|is| !is).unwrap_or(0)));
+    }
+    Ok(path.into_iter().map(|vertex| positions[vertex]).collect())
+}
+
 /// The joints and weights of each vertex of a skinned mesh; `None` for a mesh without joint indices and weights.
 ///
 /// # Errors
 /// [`ClothError::MeshNotReadable`] for a mesh that is only in the render world.
 pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, ClothError> {
-    let read = |attribute: MeshVertexAttribute| match mesh.try_attribute_option(attribute) {
-        Ok(values) => Ok(values),
-        Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
-        Err(_) => Ok(None),
-    };
+    let read = |attribute| attribute_of(mesh, attribute);
     let (
         Some(VertexAttributeValues::Uint16x4(joints)),
         Some(VertexAttributeValues::Float32x4(weights)),
@@ -97,18 +166,23 @@ pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, Cl
     Ok(Some(each.collect()))
 }
 
-/// The triangles of a mesh, by its vertices.
-fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> {
+/// The indices of a mesh of that many vertices: one after the other, if it lists none.
+fn indices(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothError> {
     let indices = match mesh.try_indices_option() {
         Ok(indices) => indices,
         Err(MeshAccessError::NotFound) => None,
         Err(_) => return Err(ClothError::MeshNotReadable),
     };
-    let indices: Vec<u32> = match indices {
+    Ok(match indices {
         Some(Indices::U16(indices)) => indices.iter().map(|index| u32::from(*index)).collect(),
         Some(Indices::U32(indices)) => indices.clone(),
         None => (0..vertices as u32).collect(),
-    };
+    })
+}
+
+/// The triangles of a mesh, by its vertices.
+fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> {
+    let indices = indices(mesh, vertices)?;
     match mesh.primitive_topology() {
         PrimitiveTopology::TriangleList => {
             let (triangles, left) = indices.as_chunks::<3>();

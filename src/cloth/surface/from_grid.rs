@@ -1,6 +1,6 @@
 //! A surface made from a grid.
 
-use bevy::math::UVec2;
+use bevy::math::{UVec2, Vec3};
 
 use super::{Derived, Extent, Spacing, Surface};
 use crate::cloth::grid::ClothGrid;
@@ -8,6 +8,14 @@ use crate::cloth::grid::ClothGrid;
 impl Surface {
     /// The surface of a grid.
     pub fn of_grid(grid: &ClothGrid) -> Self {
+        let rest = grid
+            .cells()
+            .map(|(row, column)| grid.rest_position(row, column));
+        Self::of_rope(grid, rest.collect())
+    }
+
+    /// The same of a rope, whose particles are at these places at rest (m).
+    pub(crate) fn of_rope(grid: &ClothGrid, rest: Vec<Vec3>) -> Self {
         let cells = || grid.cells();
         let spacing = grid.spacing();
         let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
@@ -36,9 +44,7 @@ impl Surface {
             }
         };
         Self {
-            rest: cells()
-                .map(|(row, column)| grid.rest_position(row, column))
-                .collect(),
+            rest,
             areas: cells()
                 .map(|(row, column)| grid.tributary_area(row, column))
                 .collect(),
@@ -66,7 +72,6 @@ impl Surface {
 mod tests {
     use super::*;
     use crate::cloth::Cloth;
-    use bevy::math::Vec3;
 
     #[test]
     fn is_the_grid_in_other_words() {

@@ -87,7 +87,7 @@ impl BuildInputs<'_> {
     pub(super) fn check_material(&self) -> Result<(), ClothError> {
         self.material.validate()?;
         match (&self.cloth.shape, self.material.stiffening) {
-            (ClothShape::Rope(_), Some(stiffening)) => {
+            (ClothShape::Rope(_) | ClothShape::Path(_), Some(stiffening)) => {
                 let quantity = "factor by which a rope stiffens";
                 ClothError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
                 Ok(())

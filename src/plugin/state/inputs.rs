@@ -66,8 +66,11 @@ impl GameQueryItem<'_, '_> {
 
     /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.
     pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
-        let is_grid = matches!(self.cloth.shape, ClothShape::Grid(_) | ClothShape::Rope(_));
-        if is_grid || !self.material?.is_woven() {
+        let is_mesh = !matches!(
+            self.cloth.shape,
+            ClothShape::Grid(_) | ClothShape::Rope(_) | ClothShape::Path(_)
+        );
+        if !is_mesh || !self.material?.is_woven() {
             return None;
         }
         let own = self.grain.as_ref();
@@ -120,7 +123,7 @@ impl Inputs {
             search,
             narrow_phase: match game.cloth.shape {
                 // A rope has no triangles.
-                ClothShape::Rope(_) => NarrowPhase::Particles,
+                ClothShape::Rope(_) | ClothShape::Path(_) => NarrowPhase::Particles,
                 _ => game.narrow_phase.copied().unwrap_or_default(),
             },
             self_collision: game.self_collision.copied(),
