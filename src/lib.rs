@@ -36,6 +36,8 @@ use crate as library;
 
 /// Most games need only this: `use bevy_drape::prelude::*`.
 pub mod prelude {
+    #[cfg(feature = "mesh")]
+    pub use crate::cloth::RopeError;
     pub use crate::cloth::{
         Cloth, ClothBackstop, ClothError, ClothFactor, ClothGrain, ClothMaterial, ClothMaterialMap,
         ClothPaint, ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothStiffening,

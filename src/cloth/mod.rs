@@ -16,6 +16,8 @@ mod pins;
 mod presence;
 mod recipe;
 mod rope;
+#[cfg(feature = "mesh")]
+mod rope_mesh;
 mod sewing;
 mod skin;
 mod spring;
@@ -39,6 +41,8 @@ pub use particles::ClothParticles;
 pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
 pub use recipe::{Cloth, ClothShape};
 pub use rope::{RopePath, RopeShape};
+#[cfg(feature = "mesh")]
+pub use rope_mesh::RopeError;
 pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
 #[doc(hidden)]
 pub use spring::{Spring, SpringKind};

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 #[cfg(feature = "mesh")]
-use super::surface::path_of_asset;
+use super::rope_mesh::{RopeError, path_of};
 use super::{
     error::ClothError,
     grid::{ClothGrid, ClothPlane, GridShape},
@@ -206,11 +206,11 @@ impl Cloth {
     /// lines. It begins at the end whose vertex has the lower index.
     ///
     /// # Errors
-    /// [`ClothError::MeshTopology`] for a mesh that is not of lines; [`ClothError::MeshNotReadable`] and
-    /// [`ClothError::MeshWithoutPositions`]; [`ClothError::NotAChain`] for edges that do not lead from one end to the other.
+    /// [`RopeError::Topology`] for a mesh that is not of lines; [`RopeError::NotAChain`] for edges that do not lead from one end to the other;
+    /// [`RopeError::Mesh`] for one that can't be read.
     #[cfg(feature = "mesh")]
-    pub fn rope_of(mesh: &bevy::mesh::Mesh, spacing: f32, radius: f32) -> Result<Self, ClothError> {
-        Ok(Self::rope_along(path_of_asset(mesh)?, spacing, radius))
+    pub fn rope_of(mesh: &bevy::mesh::Mesh, spacing: f32, radius: f32) -> Result<Self, RopeError> {
+        Ok(Self::rope_along(path_of(mesh)?, spacing, radius))
     }
 
     /// The mesh of the entity's `Mesh3d`. The cloth waits for the asset, and draws itself with its own copy: other

@@ -396,7 +396,7 @@ fn edges_of_a_mesh_are_a_rope() {
         assert_ne!(found, expected);
     }
     let refused = |indices: &[u32]| points(&mesh(PrimitiveTopology::LineList, indices));
-    let no_chain = |vertex, edges| Err(ClothError::NotAChain { vertex, edges });
+    let no_chain = |vertex, edges| Err(RopeError::NotAChain { vertex, edges });
     // A branch, a ring, a chain beside a ring, a vertex without edges, one that does not exist, and no edges.
     assert_eq!(
         refused(&[0, 1, 1, 2, 1, 3, 3, 4, 4, 5, 5, 6]),
@@ -414,9 +414,12 @@ fn edges_of_a_mesh_are_a_rope() {
     assert_eq!(refused(&[0, 1, 1, 9]), no_chain(9, 0));
     assert_eq!(refused(&[]), no_chain(0, 0));
     let faces = points(&mesh(PrimitiveTopology::TriangleList, &[0, 1, 2]));
-    assert!(matches!(faces, Err(ClothError::MeshTopology { .. })));
+    assert!(matches!(faces, Err(RopeError::Topology { .. })));
     let empty = Mesh::new(PrimitiveTopology::LineList, default());
-    assert_eq!(points(&empty), Err(ClothError::MeshWithoutPositions));
+    assert_eq!(
+        points(&empty),
+        Err(RopeError::Mesh(ClothError::MeshWithoutPositions))
+    );
     let none: Vec<Vec3> = Vec::new();
     let none = empty.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, none);
     assert_eq!(points(&none), no_chain(0, 0));

@@ -176,23 +176,11 @@ pub enum ClothError {
         "the mesh is only in the render world: load it with `RenderAssetUsages::MAIN_WORLD` too, which is the default"
     )]
     MeshNotReadable,
-    /// A mesh is made of lines or points, or one for a rope is not made of lines.
-    #[error(
-        "{topology} does not fit: a cloth needs a triangle list or strip, and `Cloth::rope_of` a list or strip of lines"
-    )]
+    /// A mesh is made of lines or points.
+    #[error("a cloth needs a triangle list or a triangle strip, not a {topology}")]
     MeshTopology {
         /// The topology of the mesh.
         topology: String,
-    },
-    /// The edges of a mesh for a rope do not lead from one end to the other.
-    #[error(
-        "the edges of a rope must lead from one end to the other, but vertex {vertex} has {edges} of them"
-    )]
-    NotAChain {
-        /// The first vertex that is in the way, or is not reached.
-        vertex: usize,
-        /// Edges that end at it.
-        edges: usize,
     },
     /// A mesh has no positions, or positions that are not `Float32x3`.
     #[error("the mesh has no positions of format `Float32x3`")]

@@ -80,7 +80,7 @@ fn attribute_of(
 ///
 /// # Errors
 /// [`ClothError::MeshNotReadable`], [`ClothError::MeshWithoutPositions`].
-fn positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
+pub(crate) fn positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
     // The renderer would soon take its vertices.
     if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
         return Err(ClothError::MeshNotReadable);
@@ -91,58 +91,6 @@ fn positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
         }
         _ => Err(ClothError::MeshWithoutPositions),
     }
-}
-
-/// The places along the edges of a mesh of lines, from the end with the lower index.
-///
-/// # Errors
-/// Those of [`Cloth::rope_of`](crate::cloth::Cloth::rope_of).
-pub(crate) fn path_of_asset(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
-    let positions = positions(mesh)?;
-    let indices = indices(mesh, positions.len())?;
-    let edges: Vec<[u32; 2]> = match mesh.primitive_topology() {
-        PrimitiveTopology::LineList => indices.as_chunks().0.to_vec(),
-        PrimitiveTopology::LineStrip => indices.array_windows().copied().collect(),
-        topology => {
-            return Err(ClothError::MeshTopology {
-                topology: format!("{topology:?}"),
-            });
-        }
-    };
-    let mut beside = vec![Vec::new(); positions.len()];
-    for [a, b] in edges {
-        for (end, other) in [(a, b), (b, a)] {
-            let vertex = end as usize;
-            (beside.get_mut(vertex))
-                .ok_or(ClothError::NotAChain { vertex, edges: 0 })?
-                .push(other);
-        }
-    }
-    let refused = |vertex: usize| ClothError::NotAChain {
-        vertex,
-        edges: beside.get(vertex).map_or(0, Vec::len),
-    };
-    if let Some(vertex) = beside
-        .iter()
-        .position(|others| !(1..=2).contains(&others.len()))
-    {
-        return Err(refused(vertex));
-    }
-    let first = beside.iter().position(|others| others.len() == 1);
-    let mut path = vec![first.ok_or_else(|| refused(0))?];
-    while let Some(next) = beside[path[path.len() - 1]]
-        .iter()
-        .map(|other| *other as usize)
-        .find(|other| path.len() < 2 || *other != path[path.len() - 2])
-    {
-        path.push(next);
-    }
-    if path.len() < positions.len() {
-        let mut is_reached = vec![false; positions.len()];
-        path.iter().for_each(|vertex| is_reached[*vertex] = true);
-        return Err(refused(is_reached.iter().position(|is| !is).unwrap_or(0)));
-    }
-    Ok(path.into_iter().map(|vertex| positions[vertex]).collect())
 }
 
 /// The joints and weights of each vertex of a skinned mesh; `None` for a mesh without joint indices and weights.
@@ -167,7 +115,10 @@ pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, Cl
 }
 
 /// The indices of a mesh of that many vertices: one after the other, if it lists none.
-fn indices(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothError> {
+///
+/// # Errors
+/// [`ClothError::MeshNotReadable`].
+pub(crate) fn indices(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothError> {
     let indices = match mesh.try_indices_option() {
         Ok(indices) => indices,
         Err(MeshAccessError::NotFound) => None,
