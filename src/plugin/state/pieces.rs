@@ -140,8 +140,9 @@ impl Pieces {
             if piece.is_asleep {
                 continue;
             }
+            let is_near = place.distance_squared(*origin) <= limits.reach.powi(2);
             // NaN is not near.
-            piece.moves |= !(place.distance_squared(*origin) <= limits.reach.powi(2));
+            piece.moves |= !is_near;
             if piece.calm == 0.0 {
                 *origin = place;
             }
