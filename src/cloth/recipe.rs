@@ -79,7 +79,7 @@ pub enum ClothShape {
     Grid(GridShape),
     /// A row of particles without faces.
     Rope(RopeShape),
-    /// The same, along a path.
+    /// A rope that begins along a path.
     Path(RopePath),
     /// Triangles provided by the game.
     Triangles {
@@ -206,8 +206,31 @@ impl Cloth {
     /// lines. It begins at the end whose vertex has the lower index.
     ///
     /// # Errors
-    /// [`RopeError::Topology`] for a mesh that is not of lines; [`RopeError::NotAChain`] for edges that do not lead from one end to the other;
-    /// [`RopeError::Mesh`] for one that can't be read.
+    /// - [`RopeError::Topology`] for a mesh that is not of lines, and [`RopeError::Unpaired`] for half of a line.
+    /// - [`RopeError::NotAChain`] for edges that do not lead from one end to the other.
+    /// - [`RopeError::Mesh`] for a mesh that can't be read.
+    ///
+    /// ```
+    /// use bevy::prelude::*;
+    /// use bevy_drape::prelude::*;
+    ///
+    /// /// A lanyard that was modelled, and is loading.
+    /// #[derive(Resource)]
+    /// struct Lanyard(Handle<Mesh>);
+    ///
+    /// fn spawn_once_loaded(lanyard: Res<Lanyard>, meshes: Res<Assets<Mesh>>, mut commands: Commands) -> Result {
+    ///     if let Some(mesh) = meshes.get(&lanyard.0) {
+    ///         commands.spawn(Cloth::rope_of(mesh, 0.02, 0.004)?);
+    ///         commands.remove_resource::<Lanyard>();
+    ///     }
+    ///     Ok(())
+    /// }
+    ///
+    /// fn add_to(app: &mut App) {
+    ///     app.add_systems(Update, spawn_once_loaded.run_if(resource_exists::<Lanyard>));
+    /// }
+    /// # let _ = add_to;
+    /// ```
     #[cfg(feature = "mesh")]
     pub fn rope_of(mesh: &bevy::mesh::Mesh, spacing: f32, radius: f32) -> Result<Self, RopeError> {
         Ok(Self::rope_along(path_of(mesh)?, spacing, radius))
@@ -311,7 +334,9 @@ impl Cloth {
     /// [`Surface::of_mesh`].
     ///
     /// # Errors
-    /// Those of [`grid`](Self::grid) and [`Surface::of_mesh`]; [`ClothError::MeshNotLoaded`] for an asset.
+    /// - Those of [`grid`](Self::grid) and [`Surface::of_mesh`], and of [`RopeShape::scaled`] for a rope.
+    /// - [`ClothError::VertexNotFinite`] for a point of a rope's path that is not finite.
+    /// - [`ClothError::MeshNotLoaded`] for an asset.
     pub fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         self.shape.surface(scale)
     }

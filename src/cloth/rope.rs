@@ -8,7 +8,7 @@ use bevy::{
 use super::{
     error::ClothError,
     grid::{ClothGrid, ClothPlane, mean},
-    limits::MAX_PARTICLES,
+    limits::{FARTHEST, MAX_PARTICLES},
     surface::Surface,
 };
 
@@ -75,9 +75,11 @@ fn width(radius: f32, scale: Vec3) -> f32 {
     4.0 * radius * mean(scale)
 }
 
-/// The shape of a rope that begins along a path, before the transform's scale. Its particles are as far apart as [`RopeShape`]'s, as measured
-/// along the path. Like that, it is straight where nothing bends it.
-#[derive(Reflect, Debug, Default, Clone, PartialEq)]
+/// The shape of a rope that begins along a path, before the transform's scale.
+///
+/// It is a [`RopeShape`] in all but its first places: its rest shape is straight, and as long as the path. Corners finer than the spacing are
+/// cut off.
+#[derive(Reflect, Debug, Clone, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct RopePath {
@@ -89,40 +91,56 @@ pub struct RopePath {
     pub radius: f32,
 }
 
+impl Default for RopePath {
+    /// As the default [`RopeShape`].
+    fn default() -> Self {
+        Self {
+            points: vec![Vec3::ZERO, Vec3::NEG_Y],
+            spacing: 0.05,
+            radius: 0.01,
+        }
+    }
+}
+
 impl RopePath {
     /// The surface under a transform's `scale`.
     ///
     /// # Errors
-    /// [`ClothError::VertexNotFinite`] for the first such point; [`ClothError::Quantity`] for fewer than two points, or for a length, spacing
-    /// or radius that is not positive and finite; [`ClothError::GridTooLarge`] for too many particles.
+    /// - [`ClothError::VertexNotFinite`] for the first point that is not finite, or is beyond 10¹² m.
+    /// - [`ClothError::Quantity`] for fewer than two points.
+    /// - [`ClothError::Quantity`] for a length, spacing or radius that is not positive and finite.
+    /// - [`ClothError::GridTooLarge`] for too many particles.
     pub(super) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         let count = self.points.len() as f32;
         ClothError::check(count, |n| n >= 2.0, "points of a rope's path", "at least 2")?;
-        if let Some(vertex) = self.points.iter().position(|point| !point.is_finite()) {
-            let position = self.points[vertex];
+        let points: Vec<Vec3> = self.points.iter().map(|point| scale * *point).collect();
+        // Not so for NaN.
+        let is_near = |point: &Vec3| point.abs().max_element() < FARTHEST && point.is_finite();
+        if let Some(vertex) = points.iter().position(|point| !is_near(point)) {
+            let position = points[vertex];
             return Err(ClothError::VertexNotFinite { vertex, position });
         }
+        let unscaled = along(&self.points).1;
         let is_length = |length: f32| length > 0.0 && length.is_finite();
         for (length, name) in [
             (self.spacing, "spacing of a rope (m)"),
             (self.radius, "radius of a rope (m)"),
-            (lengths(&self.points).1, "length of a rope's path (m)"),
+            (unscaled, "length of a rope's path (m)"),
         ] {
             ClothError::check(length, is_length, name, "positive and finite")?;
         }
-        let parts = (lengths(&self.points).1 / self.spacing).round();
+        let parts = (unscaled / self.spacing).round();
         let parts = parts.clamp(1.0, MAX_PARTICLES as f32) as u32;
-        let points: Vec<Vec3> = self.points.iter().map(|point| scale * *point).collect();
-        let (lengths, length) = lengths(&points);
+        let (reached, length) = along(&points);
         let spacing = Vec2::new(length / parts as f32, width(self.radius, scale));
         let grid = ClothGrid::new([parts + 1, 1], spacing, [Vec3::X, Vec3::Z], scale, false)?;
         let mut at = 0;
         let place = |part: u32| {
-            let along = length * (part as f32 / parts as f32);
-            while at + 2 < points.len() && lengths[at + 1] < along {
+            let way = length * (part as f32 / parts as f32);
+            while at + 2 < points.len() && reached[at + 1] < way {
                 at += 1;
             }
-            let of_side = (along - lengths[at]) / (lengths[at + 1] - lengths[at]);
+            let of_side = (way - reached[at]) / (reached[at + 1] - reached[at]);
             // A side without a length is where both of its ends are.
             let of_side = if of_side.is_finite() {
                 of_side.clamp(0.0, 1.0)
@@ -131,13 +149,19 @@ impl RopePath {
             };
             points[at].lerp(points[at + 1], of_side)
         };
-        let places = (0..=parts).map(place).collect();
-        Ok(Surface::of_rope(&grid, places))
+        let places: Vec<Vec3> = (0..=parts).map(place).collect();
+        let normal = |index: usize| {
+            let next = places[(index + 1).min(places.len() - 1)];
+            let direction = (next - places[index.saturating_sub(1)]).try_normalize();
+            direction.map_or(Vec3::Y, |of| of.any_orthonormal_vector())
+        };
+        let normals = (0..places.len()).map(normal).collect();
+        Ok(Surface::of_placed_grid(&grid, places, normals))
     }
 }
 
-/// How far each point of a path is from the first, along the path, and the last of them (m).
-fn lengths(points: &[Vec3]) -> (Vec<f32>, f32) {
+/// How far along a path each of its points is, and the last of them (m).
+fn along(points: &[Vec3]) -> (Vec<f32>, f32) {
     let mut length = 0.0;
     let sides = points.windows(2).map(|side| {
         length += f64::from(side[0].distance(side[1]));
@@ -230,12 +254,11 @@ mod tests {
         assert!(is_quantity(refused(&[Vec3::ONE], 0.1)));
         assert!(is_quantity(refused(&[Vec3::ONE; 3], 0.1)));
         assert!(is_quantity(refused(&[Vec3::ZERO, Vec3::X], f32::NAN)));
-        assert!(is_quantity(refused(&[Vec3::ZERO, Vec3::MAX], 1.0e30)));
-        let error = refused(&[Vec3::ZERO, Vec3::NAN], 0.1);
-        assert!(matches!(
-            error,
-            ClothError::VertexNotFinite { vertex: 1, .. }
-        ));
+        for far in [f32::NAN, f32::INFINITY, 1.0e13, -1.0e18] {
+            let error = refused(&[Vec3::ZERO, Vec3::Y * far], 0.1);
+            let is_named = matches!(error, ClothError::VertexNotFinite { vertex: 1, .. });
+            assert!(is_named, "{error}");
+        }
         let error = refused(&[Vec3::ZERO, Vec3::X], 1.0e-8);
         assert!(matches!(error, ClothError::GridTooLarge { .. }), "{error}");
     }

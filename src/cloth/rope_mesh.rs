@@ -21,6 +21,12 @@ pub enum RopeError {
         /// The topology of the mesh.
         topology: String,
     },
+    /// A list of lines lists an index too many.
+    #[error("a list of lines needs an even number of indices, not {indices}")]
+    Unpaired {
+        /// Number of indices.
+        indices: usize,
+    },
     /// Its edges do not lead from one end to the other.
     #[error(
         "the edges of a rope must lead from one end to the other, but vertex {vertex} has {edges} of them"
@@ -44,7 +50,13 @@ pub(super) fn path_of(mesh: &Mesh) -> Result<Vec<Vec3>, RopeError> {
     let positions = positions(mesh)?;
     let indices = indices(mesh, positions.len())?;
     let edges: Vec<[u32; 2]> = match mesh.primitive_topology() {
-        PrimitiveTopology::LineList => indices.as_chunks().0.to_vec(),
+        PrimitiveTopology::LineList => match indices.as_chunks() {
+            (edges, []) => edges.to_vec(),
+            _ => {
+                let indices = indices.len();
+                return Err(RopeError::Unpaired { indices });
+            }
+        },
         PrimitiveTopology::LineStrip => indices.array_windows().copied().collect(),
         topology => {
             return Err(RopeError::Topology {

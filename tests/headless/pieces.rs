@@ -202,15 +202,10 @@ fn a_piece_falls_as_if_there_was_no_damping() {
 #[test]
 fn whatever_would_move_a_piece_wakes_it() {
     type Wake = fn(&mut Banner, Vec3);
-    let wakes: [(&str, bool, Wake); 12] = [
+    let wakes: [(&str, bool, Wake); 11] = [
         ("a ball that appears", true, |banner, at| {
             let ball = (ClothCollider::ball(0.1), Transform::from_translation(at));
             banner.app.world_mut().spawn(ball);
-        }),
-        ("a body", true, |banner, at| {
-            let ball = (ClothCollider::ball(0.1), ClothBody::default());
-            let at = Transform::from_translation(at);
-            banner.app.world_mut().spawn((ball, at));
         }),
         ("wind", true, |banner, _| {
             let wind = ClothWind {
@@ -276,6 +271,26 @@ fn whatever_would_move_a_piece_wakes_it() {
             let fallen = banner.places(&low)[0].y - places[0].y;
             assert!((fallen + 0.48).abs() < 0.05, "{fallen}");
         }
+    }
+}
+
+/// A collider that appears near a piece wakes it for as long as a piece has to rest; a body, which may push back, for good.
+#[test]
+fn no_piece_sleeps_near_a_body() {
+    for is_body in [false, true] {
+        let mut banner = cut(grid(), ());
+        let low = banner.fall_asleep();
+        let at = banner.places(&low)[0] + 0.35 * Vec3::Y;
+        let ball = (ClothCollider::ball(0.1), Transform::from_translation(at));
+        let mut ball = banner.app.world_mut().spawn(ball);
+        if is_body {
+            ball.insert(ClothBody::default());
+        }
+        banner.tick(1);
+        assert_eq!(banner.sleeping(), 0);
+        banner.tick(64 * 8);
+        let expected = if is_body { 0 } else { low.len() };
+        assert_eq!(banner.sleeping(), expected);
     }
 }
 

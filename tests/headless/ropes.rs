@@ -355,6 +355,28 @@ fn one_along_a_path_hangs_as_a_chain_does() {
     assert!((length(&all) - 2.0).abs() < 2.0e-3);
 }
 
+/// An upright path falls over. One with another path is built anew, even of the same length; one with another spacing keeps its place.
+#[test]
+fn one_along_a_path_falls_over_and_changes() {
+    let upright = [Vec3::ZERO, Vec3::Y];
+    let mut app = app();
+    let rope = spawn(&mut app, (Cloth::rope_along(upright, 0.05, 0.01), damped()));
+    tick(&mut app, 600);
+    let end = |app: &App| *places(app, rope).last().expect("an end");
+    let hung = end(&app);
+    assert!(hung.distance(Vec3::NEG_Y) < 0.01, "{hung}");
+    let change_to = |app: &mut App, path: [Vec3; 2], spacing| {
+        let other = Cloth::rope_along(path, spacing, 0.01);
+        app.world_mut().entity_mut(rope).insert(other);
+        tick(app, 1);
+    };
+    change_to(&mut app, upright, 0.025);
+    assert_eq!(places(&app, rope).len(), 41);
+    assert!(end(&app).distance(hung) < 1.0e-3);
+    change_to(&mut app, [Vec3::ZERO, Vec3::Z], 0.025);
+    assert!(end(&app).distance(Vec3::Z) < 0.01);
+}
+
 /// The edges of a mesh without faces, in any order and direction. It begins at the end with the lower index.
 #[test]
 fn edges_of_a_mesh_are_a_rope() {
@@ -378,6 +400,7 @@ fn edges_of_a_mesh_are_a_rope() {
         .into_iter()
         .flat_map(|at| [chain[at + at % 2], chain[at + 1 - at % 2]])
         .collect();
+    let reversed: Vec<u32> = chain.iter().rev().copied().collect();
     let points = |mesh: &Mesh| match Cloth::rope_of(mesh, 0.1, 0.01).map(|rope| rope.shape) {
         Ok(ClothShape::Path(path)) => Ok(path.points),
         Ok(other) => panic!("{other:?}"),
@@ -387,13 +410,9 @@ fn edges_of_a_mesh_are_a_rope() {
     for mesh in [
         mesh(PrimitiveTopology::LineList, &list),
         mesh(PrimitiveTopology::LineStrip, &chain),
+        mesh(PrimitiveTopology::LineStrip, &reversed),
     ] {
-        let mut found = points(&mesh).expect("a chain");
-        // Its ends are the vertices 1 and 2.
-        assert_eq!(found[0], place(0));
-        assert_eq!(found, expected);
-        found.reverse();
-        assert_ne!(found, expected);
+        assert_eq!(points(&mesh).expect("a chain"), expected);
     }
     let refused = |indices: &[u32]| points(&mesh(PrimitiveTopology::LineList, indices));
     let no_chain = |vertex, edges| Err(RopeError::NotAChain { vertex, edges });
@@ -413,6 +432,7 @@ fn edges_of_a_mesh_are_a_rope() {
     assert_eq!(refused(&[0, 1, 1, 2, 2, 3, 3, 4, 4, 5]), no_chain(6, 0));
     assert_eq!(refused(&[0, 1, 1, 9]), no_chain(9, 0));
     assert_eq!(refused(&[]), no_chain(0, 0));
+    assert_eq!(refused(&[0, 1, 1]), Err(RopeError::Unpaired { indices: 3 }));
     let faces = points(&mesh(PrimitiveTopology::TriangleList, &[0, 1, 2]));
     assert!(matches!(faces, Err(RopeError::Topology { .. })));
     let empty = Mesh::new(PrimitiveTopology::LineList, default());

@@ -8,14 +8,13 @@ use crate::cloth::grid::ClothGrid;
 impl Surface {
     /// The surface of a grid.
     pub fn of_grid(grid: &ClothGrid) -> Self {
-        let rest = grid
-            .cells()
-            .map(|(row, column)| grid.rest_position(row, column));
-        Self::of_rope(grid, rest.collect())
+        let places = grid.cells();
+        let rest = places.map(|(row, column)| grid.rest_position(row, column));
+        Self::of_placed_grid(grid, rest.collect(), vec![grid.normal()])
     }
 
-    /// The same of a rope, whose particles are at these places at rest (m).
-    pub(crate) fn of_rope(grid: &ClothGrid, rest: Vec<Vec3>) -> Self {
+    /// The surface of a grid whose particles begin at other places than the grid's (m), with one normal for all, or one for each.
+    pub(crate) fn of_placed_grid(grid: &ClothGrid, rest: Vec<Vec3>, normals: Vec<Vec3>) -> Self {
         let cells = || grid.cells();
         let spacing = grid.spacing();
         let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
@@ -48,7 +47,7 @@ impl Surface {
             areas: cells()
                 .map(|(row, column)| grid.tributary_area(row, column))
                 .collect(),
-            normals: vec![grid.normal()],
+            normals,
             particle_of_vertex: None,
             attributes: Vec::new(),
             links: Vec::new(),

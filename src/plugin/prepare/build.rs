@@ -12,7 +12,10 @@ use super::{
     tears::follow_tears,
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, ClothTears, DensityFactors, MaterialFactors, Surface},
+    cloth::{
+        ClothError, ClothParticles, ClothShape, ClothTears, DensityFactors, MaterialFactors,
+        Surface,
+    },
     plugin::state::{
         BuiltFrom, ClothBuilt, ClothState, FailedBuild, KnownShape, Recipe, Shared, SharedParts,
     },
@@ -219,7 +222,9 @@ fn resampled(
         return Ok(None);
     }
     let is_known = built.matches(particles) && particles.validate().is_ok();
-    if !is_known || !is_same_rectangle(from, to) {
+    let known = built.shared.recipe.as_ref().map(|recipe| &*recipe.shape.0);
+    let is_alike = known.is_some_and(|known| lead_alike(known, &wanted.cloth.shape));
+    if !is_known || !is_alike || !is_same_rectangle(from, to) {
         return Ok(None);
     }
     let mut new = ClothParticles::at_rest(surface, wanted.material)?;
@@ -242,6 +247,15 @@ fn resampled(
         shared.new_solver().advance(new, step, &[], |_, _| false);
     })?;
     Ok(Some(new))
+}
+
+/// Whether ropes begin along the same path, or neither of two shapes has a path.
+fn lead_alike(one: &ClothShape, other: &ClothShape) -> bool {
+    match (one, other) {
+        (ClothShape::Path(one), ClothShape::Path(other)) => one.points == other.points,
+        (ClothShape::Path(_), _) | (_, ClothShape::Path(_)) => false,
+        _ => true,
+    }
 }
 
 /// The scale of a cloth. That of a mesh without its last digits, which depend on how the cloth is turned: so that those made

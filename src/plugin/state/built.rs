@@ -233,7 +233,7 @@ impl ClothBuilt {
     /// Takes over masses and pins of particles that the game wrote.
     pub(crate) fn refresh_masses(&mut self, particles: &ClothParticles) {
         if self.tethered.is_none() {
-            // The next tethers do.
+            // `tether` takes them over, later in the tick.
             return;
         }
         self.masses = particles.free_masses();

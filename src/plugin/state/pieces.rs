@@ -46,12 +46,12 @@ pub(crate) struct Pieces {
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Piece {
-    /// For how long its particles have been near their places (s).
+    /// For how long its particles have been near their places (s); 0 if it moved in the last tick, or was woken.
     calm: f32,
     /// Whether it has left its place in this tick, or is moved by pins.
     #[cfg_attr(feature = "serialize", serde(skip))]
     moves: bool,
-    /// The least and the greatest corner of its box (m), where one of them may sleep.
+    /// The least and the greatest corner of its box (m): of an earlier tick, while no piece may sleep.
     #[cfg_attr(feature = "serialize", serde(skip))]
     corners: [Vec3; 2],
     is_asleep: bool,
