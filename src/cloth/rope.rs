@@ -153,7 +153,7 @@ impl RopePath {
         let normal = |index: usize| {
             let next = places[(index + 1).min(places.len() - 1)];
             let direction = (next - places[index.saturating_sub(1)]).try_normalize();
-            direction.map_or(Vec3::Y, |of| of.any_orthonormal_vector())
+            direction.map_or(Vec3::Y, Vec3::any_orthonormal_vector)
         };
         let normals = (0..places.len()).map(normal).collect();
         Ok(Surface::of_placed_grid(&grid, places, normals))
