@@ -84,7 +84,7 @@ fn measure(
     for (cloth, all, frame) in &cloths {
         let at_rest = match &cloth.shape {
             ClothShape::Rope(rope) => rope.spacing * (rope.particles - 1) as f32,
-            ClothShape::Path(path) => length(&path.points),
+            ClothShape::RopePath(path) => length(&path.points),
             _ => continue,
         };
         let places = places((cloth, all, frame));

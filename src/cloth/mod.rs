@@ -8,6 +8,7 @@ mod grain;
 mod grid;
 mod lanes;
 mod limits;
+mod lines;
 mod material;
 mod material_map;
 mod particle_id;

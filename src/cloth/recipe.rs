@@ -80,7 +80,7 @@ pub enum ClothShape {
     /// A row of particles without faces.
     Rope(RopeShape),
     /// A rope that begins along a path.
-    Path(RopePath),
+    RopePath(RopePath),
     /// Triangles provided by the game.
     Triangles {
         /// Vertices in the entity's frame (m), before the transform's scale.
@@ -106,12 +106,25 @@ impl Default for ClothShape {
 }
 
 impl ClothShape {
+    /// Whether it is a rope: a row of particles without faces.
+    pub const fn is_rope(&self) -> bool {
+        matches!(self, Self::Rope(_) | Self::RopePath(_))
+    }
+
+    /// The points of the path along which a rope begins, if it has one.
+    pub(crate) fn path(&self) -> Option<&[Vec3]> {
+        match self {
+            Self::RopePath(path) => Some(&path.points),
+            _ => None,
+        }
+    }
+
     /// As [`Cloth::surface`].
     pub(crate) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         match self {
             Self::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
             Self::Rope(rope) => rope.scaled(scale).map(|grid| Surface::of_grid(&grid)),
-            Self::Path(path) => path.surface(scale),
+            Self::RopePath(path) => path.surface(scale),
             Self::Triangles {
                 positions,
                 triangles,
@@ -195,7 +208,7 @@ impl Cloth {
     /// # Ok::<(), bevy_drape::cloth::ClothError>(())
     /// ```
     pub fn rope_along(points: impl IntoIterator<Item = Vec3>, spacing: f32, radius: f32) -> Self {
-        Self::of_shape(ClothShape::Path(RopePath {
+        Self::of_shape(ClothShape::RopePath(RopePath {
             points: points.into_iter().collect(),
             spacing,
             radius,
@@ -207,6 +220,7 @@ impl Cloth {
     ///
     /// # Errors
     /// - [`RopeError::Topology`] for a mesh that is not of lines, and [`RopeError::Unpaired`] for half of a line.
+    /// - [`RopeError::NoSuchVertex`] for an index beyond the vertices.
     /// - [`RopeError::NotAChain`] for edges that do not lead from one end to the other.
     /// - [`RopeError::Mesh`] for a mesh that can't be read.
     ///
@@ -292,7 +306,7 @@ impl Cloth {
     }
 
     /// Welds vertices of a mesh that are no farther apart than `distance` (m, before the transform's scale) into one
-    /// particle. 0 welds only vertices at exactly the same position. Ignored by a grid.
+    /// particle. 0 welds only vertices at exactly the same position. Ignored by a grid and a rope.
     pub const fn welded(mut self, distance: f32) -> Self {
         match &mut self.shape {
             ClothShape::Triangles { weld, .. } => *weld = distance,
@@ -335,7 +349,7 @@ impl Cloth {
     ///
     /// # Errors
     /// - Those of [`grid`](Self::grid) and [`Surface::of_mesh`], and of [`RopeShape::scaled`] for a rope.
-    /// - [`ClothError::VertexNotFinite`] for a point of a rope's path that is not finite.
+    /// - [`ClothError::VertexNotFinite`] for a point of a rope's path that, scaled, is not finite or is beyond 10¹² m.
     /// - [`ClothError::MeshNotLoaded`] for an asset.
     pub fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         self.shape.surface(scale)

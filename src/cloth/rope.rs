@@ -77,7 +77,8 @@ fn width(radius: f32, scale: Vec3) -> f32 {
 
 /// The shape of a rope that begins along a path, before the transform's scale.
 ///
-/// It is a [`RopeShape`] in all but its first places: its rest shape is straight, and as long as the path. Corners finer than the spacing are
+/// It is a [`RopeShape`] that begins elsewhere. Its positions at rest, as [`Pin::at_rest`](crate::cloth::Pin::at_rest) sees them, are on the
+/// path. Nothing holds it there: its springs are as long as the path, and its bending pulls it straight. A corner between two particles is
 /// cut off.
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[type_path = "bevy_drape"]
@@ -106,9 +107,9 @@ impl RopePath {
     /// The surface under a transform's `scale`.
     ///
     /// # Errors
-    /// - [`ClothError::VertexNotFinite`] for the first point that is not finite, or is beyond 10¹² m.
+    /// - [`ClothError::VertexNotFinite`] for the first point that, scaled, is not finite or is beyond 10¹² m.
     /// - [`ClothError::Quantity`] for fewer than two points.
-    /// - [`ClothError::Quantity`] for a length, spacing or radius that is not positive and finite.
+    /// - [`ClothError::Quantity`] for a length, spacing or radius that is not positive and finite, or is too small or large once scaled.
     /// - [`ClothError::GridTooLarge`] for too many particles.
     pub(super) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         let count = self.points.len() as f32;

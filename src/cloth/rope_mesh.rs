@@ -8,7 +8,8 @@ use thiserror::Error;
 
 use super::{
     error::ClothError,
-    surface::{indices, positions},
+    lines::edge_lines,
+    surface::{indices_of_asset, positions_of_asset},
 };
 
 /// The reason why [`Cloth::rope_of`](crate::cloth::Cloth::rope_of) makes no rope of a mesh.
@@ -27,7 +28,15 @@ pub enum RopeError {
         /// Number of indices.
         indices: usize,
     },
-    /// Its edges do not lead from one end to the other.
+    /// A line ends at a vertex that does not exist.
+    #[error("a line ends at vertex {vertex}, but the mesh has {vertices}")]
+    NoSuchVertex {
+        /// The vertex.
+        vertex: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// Its edges do not lead from one end to the other. Vertices in one place are not joined: each edge has to share its vertices with the next.
     #[error(
         "the edges of a rope must lead from one end to the other, but vertex {vertex} has {edges} of them"
     )]
@@ -47,8 +56,8 @@ pub enum RopeError {
 /// # Errors
 /// Those of [`RopeError`].
 pub(super) fn path_of(mesh: &Mesh) -> Result<Vec<Vec3>, RopeError> {
-    let positions = positions(mesh)?;
-    let indices = indices(mesh, positions.len())?;
+    let positions = positions_of_asset(mesh)?;
+    let indices = indices_of_asset(mesh, positions.len())?;
     let edges: Vec<[u32; 2]> = match mesh.primitive_topology() {
         PrimitiveTopology::LineList => match indices.as_chunks() {
             (edges, []) => edges.to_vec(),
@@ -64,38 +73,30 @@ pub(super) fn path_of(mesh: &Mesh) -> Result<Vec<Vec3>, RopeError> {
             });
         }
     };
-    let mut beside = vec![Vec::new(); positions.len()];
-    for [a, b] in edges {
-        for (end, other) in [(a, b), (b, a)] {
-            let vertex = end as usize;
-            (beside.get_mut(vertex))
-                .ok_or(RopeError::NotAChain { vertex, edges: 0 })?
-                .push(other);
+    let vertices = positions.len();
+    let mut beside = vec![Vec::new(); vertices];
+    for [a, b] in edges.into_iter().map(|edge| edge.map(|end| end as usize)) {
+        let vertex = a.max(b);
+        if vertex >= vertices {
+            return Err(RopeError::NoSuchVertex { vertex, vertices });
         }
+        beside[a].push(b);
+        beside[b].push(a);
     }
-    let refused = |vertex: usize| RopeError::NotAChain {
-        vertex,
-        edges: beside.get(vertex).map_or(0, Vec::len),
-    };
-    if let Some(vertex) = beside
-        .iter()
-        .position(|others| !(1..=2).contains(&others.len()))
-    {
-        return Err(refused(vertex));
+    let lines = edge_lines(&mut beside, |vertex| vertex);
+    let is_inside = |others: &Vec<usize>| (1..=2).contains(&others.len());
+    let wrong = beside.iter().position(|others| !is_inside(others));
+    // A ring begins anywhere, and begins with two edges. A second line begins at a vertex that the first does not reach.
+    let wrong = wrong.or_else(|| match &lines[..] {
+        [line] if beside[line.places[0]].len() == 1 => None,
+        [line] => Some(line.places[0]),
+        [_, second, ..] => Some(second.places[0]),
+        [] => None,
+    });
+    if let Some(vertex) = wrong {
+        let edges = beside[vertex].len();
+        return Err(RopeError::NotAChain { vertex, edges });
     }
-    let first = beside.iter().position(|others| others.len() == 1);
-    let mut path = vec![first.ok_or_else(|| refused(0))?];
-    while let Some(next) = beside[path[path.len() - 1]]
-        .iter()
-        .map(|other| *other as usize)
-        .find(|other| path.len() < 2 || *other != path[path.len() - 2])
-    {
-        path.push(next);
-    }
-    if path.len() < positions.len() {
-        let mut is_reached = vec![false; positions.len()];
-        path.iter().for_each(|vertex| is_reached[*vertex] = true);
-        return Err(refused(is_reached.iter().position(|is| !is).unwrap_or(0)));
-    }
-    Ok(path.into_iter().map(|vertex| positions[vertex]).collect())
+    let along = lines.into_iter().flat_map(|line| line.places);
+    Ok(along.map(|vertex| positions[vertex]).collect())
 }

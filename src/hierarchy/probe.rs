@@ -85,8 +85,8 @@ impl Core {
         }
     }
 
-    /// Whether `point` may be within `reach` (m) of the core. Never false if it is. Inlined, so that the compiler takes what depends on
-    /// the core alone out of loops: a ray then takes 0.6 of the time.
+    /// Whether `point` may be within `reach` (m) of the core. Never false if it is.
+    // Inlined, so that the compiler takes what depends on the core alone out of loops over nodes.
     #[inline(always)]
     pub(crate) fn may_reach(&self, point: Vec3, reach: f32) -> bool {
         let reach = reach * ROUNDING + self.size() * 1.0e-5;
@@ -97,7 +97,7 @@ impl Core {
                 let square = along.length_squared();
                 let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
                 let t = offset.dot(along) * inverse;
-                // NaN, as of a segment without a length, is the first end.
+                // NaN, as of a segment that is too short to divide by its square, is the first end.
                 let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
                 offset.distance_squared(along * t)
             }

@@ -35,14 +35,11 @@ impl FreePieces {
             is_held[*piece as usize] |= inverse_mass == 0.0;
         }
         let layout = surface.layout();
-        let mut lanes = vec![
-            0;
-            if is_held.contains(&false) {
-                layout.blocks()
-            } else {
-                0
-            }
-        ];
+        let blocks = match is_held.contains(&false) {
+            true => layout.blocks(),
+            false => 0,
+        };
+        let mut lanes = vec![0; blocks];
         let mut pieces = vec![FreePiece::default(); count];
         for (piece, slot) in of_particle.iter().zip(layout.slots()) {
             if !is_held[*piece as usize] {

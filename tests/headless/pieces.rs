@@ -308,11 +308,11 @@ fn a_piece_sleeps_on_a_slope() {
             banner.tick(1);
             assert_eq!(banner.places(&low), places);
         }
-        let awake = ClothMaterial {
+        let slippery = ClothMaterial {
             friction: 0.02,
             ..ClothMaterial::COTTON
         };
-        change::<ClothMaterial>(&mut banner.app, banner.cloth, |of| *of = awake);
+        change::<ClothMaterial>(&mut banner.app, banner.cloth, |of| *of = slippery);
         banner.tick(64);
         let slid = banner.places(&low)[0].distance(places[0]);
         assert!(slid > 0.2, "{slid}");
@@ -368,6 +368,44 @@ fn a_piece_that_comes_down_wakes_the_one_below() {
     }
     let gap = awake_at.expect("it is woken");
     assert!((0.0..0.2).contains(&gap), "{gap}");
+}
+
+/// A snapshot goes on to the last bit from whatever a piece does: it falls, comes to rest, or has just been woken.
+#[test]
+fn a_piece_that_is_awake_is_in_a_snapshot() {
+    let mut banner = cut(grid(), ());
+    for stage in 0..12 {
+        banner.tick(23);
+        if stage == 9 {
+            banner.fall_asleep();
+            change::<Transform>(&mut banner.app, banner.floor, |at| {
+                at.translation.y -= 1.0e-3
+            });
+            banner.tick(1);
+        }
+        let saved = ClothWorldSnapshot::of(banner.app.world_mut());
+        let ticks = banner.ticks;
+        let go_on = |banner: &mut Banner| -> Vec<(ClothParticles, usize)> {
+            let ticks = (0..150).map(|_| {
+                banner.tick(1);
+                (
+                    particles(&banner.app, banner.cloth).clone(),
+                    banner.sleeping(),
+                )
+            });
+            ticks.collect()
+        };
+        let expected = go_on(&mut banner);
+        saved
+            .restore(banner.app.world_mut())
+            .expect("the same world");
+        banner.ticks = ticks;
+        assert!(go_on(&mut banner) == expected, "{stage}");
+        saved
+            .restore(banner.app.world_mut())
+            .expect("the same world");
+        banner.ticks = ticks;
+    }
 }
 
 /// A snapshot of a piece that sleeps goes on to the last bit: rolled back, and in a new app from a file.

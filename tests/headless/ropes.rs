@@ -175,7 +175,7 @@ fn it_ties_a_sail_by_its_corners() {
     let mut ropes = app
         .world_mut()
         .query_filtered::<(Entity, &Cloth), Without<ClothSeam>>();
-    let is_rope = |cloth: &Cloth| matches!(cloth.shape, ClothShape::Rope(_));
+    let is_rope = |cloth: &Cloth| cloth.shape.is_rope();
     let ropes: Vec<Entity> = ropes
         .iter(app.world())
         .filter_map(|(entity, cloth)| is_rope(cloth).then_some(entity))
@@ -376,6 +376,13 @@ fn one_along_a_path_falls_over_and_changes() {
     assert!(end(&app).distance(hung) < 1.0e-3);
     change_to(&mut app, [Vec3::ZERO, Vec3::Z], 0.025);
     assert!(end(&app).distance(Vec3::Z) < 0.01);
+    // Mirrored, it is as long as before.
+    change::<Transform>(&mut app, rope, |place| place.scale.z = -1.0);
+    tick(&mut app, 30);
+    let other = Cloth::rope_along([Vec3::ZERO, Vec3::Z], 0.05, 0.01);
+    app.world_mut().entity_mut(rope).insert(other);
+    tick(&mut app, 1);
+    assert!(end(&app).distance(-Vec3::Z) < 0.01);
 }
 
 /// The edges of a mesh without faces, in any order and direction. It begins at the end with the lower index.
@@ -403,7 +410,7 @@ fn edges_of_a_mesh_are_a_rope() {
         .collect();
     let reversed: Vec<u32> = chain.iter().rev().copied().collect();
     let points = |mesh: &Mesh| match Cloth::rope_of(mesh, 0.1, 0.01).map(|rope| rope.shape) {
-        Ok(ClothShape::Path(path)) => Ok(path.points),
+        Ok(ClothShape::RopePath(path)) => Ok(path.points),
         Ok(other) => panic!("{other:?}"),
         Err(error) => Err(error),
     };
@@ -431,7 +438,19 @@ fn edges_of_a_mesh_are_a_rope() {
         no_chain(3, 2)
     );
     assert_eq!(refused(&[0, 1, 1, 2, 2, 3, 3, 4, 4, 5]), no_chain(6, 0));
-    assert_eq!(refused(&[0, 1, 1, 9]), no_chain(9, 0));
+    assert_eq!(
+        refused(&[0, 1, 1, 0, 2, 3, 3, 4, 4, 5, 5, 6]),
+        no_chain(0, 2)
+    );
+    assert_eq!(
+        refused(&[0, 0, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6]),
+        no_chain(0, 2)
+    );
+    let none_such = RopeError::NoSuchVertex {
+        vertex: 9,
+        vertices: 7,
+    };
+    assert_eq!(refused(&[0, 1, 1, 9]), Err(none_such));
     assert_eq!(refused(&[]), no_chain(0, 0));
     assert_eq!(refused(&[0, 1, 1]), Err(RopeError::Unpaired { indices: 3 }));
     let faces = points(&mesh(PrimitiveTopology::TriangleList, &[0, 1, 2]));
@@ -443,7 +462,7 @@ fn edges_of_a_mesh_are_a_rope() {
     );
     let none: Vec<Vec3> = Vec::new();
     let none = empty.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, none);
-    assert_eq!(points(&none), no_chain(0, 0));
+    assert_eq!(points(&none), Ok(Vec::new()));
 }
 
 /// A bad rope gets a fault that names the value, and nothing else stops.

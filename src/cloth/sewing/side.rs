@@ -3,7 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::line::Line;
-use crate::cloth::{error::ClothError, pins::Pin, surface::Surface};
+use crate::cloth::{
+    error::ClothError,
+    lines::{EdgeLine, edge_lines},
+    pins::Pin,
+    surface::Surface,
+};
 
 /// The particles of one side of a seam.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,28 +128,12 @@ fn lines(surface: &Surface, selected: &[u32], edges: &[[u32; 2]]) -> Vec<Line> {
             beside[b].push(a);
         }
     }
-    let by_vertex = |places: &mut [usize]| places.sort_unstable_by_key(|&place| vertex_of[place]);
-    beside.iter_mut().for_each(|places| by_vertex(places));
-    let mut starts: Vec<usize> = (0..selected.len()).collect();
-    // Ends of lines first, then rings.
-    starts.sort_by_key(|&place| (beside[place].len() > 1, vertex_of[place]));
-    let mut is_known = vec![false; selected.len()];
-    let mut lines = Vec::new();
-    for start in starts {
-        if is_known[start] {
-            continue;
-        }
-        let mut places = vec![start];
-        let mut next = Some(start);
-        while let Some(here) = next {
-            is_known[here] = true;
-            next = beside[here].iter().copied().find(|&near| !is_known[near]);
-            places.extend(next);
-        }
-        let last = places[places.len() - 1];
-        let is_ring = places.len() > 2 && beside[last].contains(&start);
+    let line = |EdgeLine { places, is_ring }| {
         let particles = places.into_iter().map(|place| selected[place]).collect();
-        lines.push(Line::new(particles, is_ring, surface.rest_positions()));
-    }
-    lines
+        Line::new(particles, is_ring, surface.rest_positions())
+    };
+    edge_lines(&mut beside, |place| vertex_of[place])
+        .into_iter()
+        .map(line)
+        .collect()
 }

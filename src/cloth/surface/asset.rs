@@ -31,7 +31,7 @@ impl TriangleMesh {
     /// lines or points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] for an incomplete
     /// triangle.
     pub fn of_asset(mesh: &Mesh) -> Result<Self, ClothError> {
-        let positions = positions(mesh)?;
+        let positions = positions_of_asset(mesh)?;
         let read = |attribute| attribute_of(mesh, attribute);
         let triangles = triangles(mesh, positions.len())?;
         let vectors = |values: Option<&VertexAttributeValues>| match values {
@@ -80,7 +80,7 @@ fn attribute_of(
 ///
 /// # Errors
 /// [`ClothError::MeshNotReadable`], [`ClothError::MeshWithoutPositions`].
-pub(crate) fn positions(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
+pub(crate) fn positions_of_asset(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
     // The renderer would soon take its vertices.
     if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
         return Err(ClothError::MeshNotReadable);
@@ -118,7 +118,7 @@ pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, Cl
 ///
 /// # Errors
 /// [`ClothError::MeshNotReadable`].
-pub(crate) fn indices(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothError> {
+pub(crate) fn indices_of_asset(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothError> {
     let indices = match mesh.try_indices_option() {
         Ok(indices) => indices,
         Err(MeshAccessError::NotFound) => None,
@@ -133,7 +133,7 @@ pub(crate) fn indices(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothErr
 
 /// The triangles of a mesh, by its vertices.
 fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> {
-    let indices = indices(mesh, vertices)?;
+    let indices = indices_of_asset(mesh, vertices)?;
     match mesh.primitive_topology() {
         PrimitiveTopology::TriangleList => {
             let (triangles, left) = indices.as_chunks::<3>();

@@ -47,7 +47,7 @@ pub use triangles::{TriangleMesh, VertexAttribute};
 use triangulation::Triangulation;
 
 #[cfg(feature = "mesh")]
-pub(crate) use asset::{indices, positions, skin_of_asset};
+pub(crate) use asset::{indices_of_asset, positions_of_asset, skin_of_asset};
 pub(crate) use chains::{Chain, Chains};
 pub(crate) use faces::Faces;
 pub(crate) use fans::{Fan, Fans};

@@ -86,8 +86,8 @@ impl BuildInputs<'_> {
     /// Those of [`ClothMaterial::validate`]; [`ClothError::Quantity`] for a rope that stiffens.
     pub(super) fn check_material(&self) -> Result<(), ClothError> {
         self.material.validate()?;
-        match (&self.cloth.shape, self.material.stiffening) {
-            (ClothShape::Rope(_) | ClothShape::Path(_), Some(stiffening)) => {
+        match self.material.stiffening {
+            Some(stiffening) if self.cloth.shape.is_rope() => {
                 let quantity = "factor by which a rope stiffens";
                 ClothError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
                 Ok(())

@@ -66,11 +66,9 @@ impl GameQueryItem<'_, '_> {
 
     /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.
     pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
-        let is_mesh = !matches!(
-            self.cloth.shape,
-            ClothShape::Grid(_) | ClothShape::Rope(_) | ClothShape::Path(_)
-        );
-        if !is_mesh || !self.material?.is_woven() {
+        let shape = &self.cloth.shape;
+        let is_grid = shape.is_rope() || matches!(shape, ClothShape::Grid(_));
+        if is_grid || !self.material?.is_woven() {
             return None;
         }
         let own = self.grain.as_ref();
@@ -121,10 +119,10 @@ impl Inputs {
             settings,
             material,
             search,
-            narrow_phase: match game.cloth.shape {
-                // A rope has no triangles.
-                ClothShape::Rope(_) | ClothShape::Path(_) => NarrowPhase::Particles,
-                _ => game.narrow_phase.copied().unwrap_or_default(),
+            narrow_phase: match game.cloth.shape.is_rope() {
+                // It has no triangles.
+                true => NarrowPhase::Particles,
+                false => game.narrow_phase.copied().unwrap_or_default(),
             },
             self_collision: game.self_collision.copied(),
             creasing: game.creasing.copied(),

@@ -185,7 +185,7 @@ impl Pieces {
             if !self.all[at].may_sleep(patience) {
                 continue;
             }
-            let Piece { corners, .. } = self.all[at];
+            let corners = self.all[at].corners;
             let is_disturbed = touching.is_some_and(|distance| {
                 let meets = |[low, high]: [Vec3; 2]| {
                     let gap = (low - corners[1]).max(corners[0] - high);
@@ -342,6 +342,19 @@ mod tests {
         }
         pieces.fall_asleep(2.0, Some(1.0), |_| false);
         assert!(!pieces.sleeps(0));
+    }
+
+    /// A piece that was calm and jumps begins anew: it sleeps half a second after the tick after its jump.
+    #[test]
+    fn a_jump_begins_anew() {
+        let jumps = |particles: &mut ClothParticles, tick: u32| {
+            if tick == 3 {
+                shift(particles, 0, 0.1 * Vec3::X);
+            }
+        };
+        // It moves in ticks 0, as it is seen for the first time, and 3 and 4.
+        assert_eq!(asleep_after(5 + 4, &[], None, jumps), [false, true]);
+        assert_eq!(asleep_after(5 + 5, &[], None, jumps), [true; 2]);
     }
 
     /// A pin that moves keeps its piece awake, and with layers each piece beside one that moves.

@@ -23,6 +23,13 @@ pub(crate) struct Recipe {
 }
 
 impl Recipe {
+    /// Whether it has a NaN, which is unlike itself.
+    pub fn has_nan(&self) -> bool {
+        let same = self;
+        let shape = &*same.shape.0;
+        self != same || *self.shape.0 != *shape
+    }
+
     /// The surface with its grain and its tears: of `mesh`, if it is made from an asset.
     ///
     /// # Errors
@@ -55,7 +62,7 @@ impl Recipe {
     }
 }
 
-/// A shape that many recipes share.
+/// A shape that many recipes share. One with a NaN is like itself, unlike a [`ClothShape`].
 #[derive(Debug, Clone)]
 pub(crate) struct KnownShape(pub Arc<ClothShape>);
 

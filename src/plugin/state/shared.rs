@@ -23,7 +23,7 @@ pub(crate) struct Shared {
     pub springs: Springs,
     pub tree: QuadTree,
     /// An unused solver, of which each cloth gets a clone.
-    solver: Solver,
+    pub solver: Solver,
     /// The first clone, if it was made in the background.
     spare: Mutex<Option<Solver>>,
     /// For contact of cloth with cloth: made when a cloth needs it.
@@ -103,13 +103,13 @@ impl Shared {
     }
 
     /// Makes now what the first tick of a cloth needs.
-    pub fn make_ready(&mut self, has_sheet: bool) {
+    pub fn make_ready(&mut self, needs_sheet: bool) {
         self.surface.fans();
         self.surface.pieces_of();
         if self.surface.as_grid().is_none() {
             self.surface.face_widths();
         }
-        if has_sheet {
+        if needs_sheet {
             self.sheet();
         }
         self.spare = Mutex::new(Some(self.solver.clone()));

@@ -76,8 +76,7 @@ impl SharedParts {
         mesh: impl FnOnce() -> Result<TriangleMesh, ClothError>,
     ) -> Result<Option<Arc<Shared>>, ClothError> {
         let recipe = &request.recipe;
-        // NaN is unlike itself.
-        if *recipe != recipe.clone() || *recipe.shape.0 != (*recipe.shape.0).clone() {
+        if recipe.has_nan() {
             return Ok(None);
         }
         if let Some(built) = self.builds.take(recipe)? {

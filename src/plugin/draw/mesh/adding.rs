@@ -109,7 +109,7 @@ pub(super) fn add_meshes(
 fn replacing(cloth: &Cloth) -> String {
     let kind = match cloth.shape {
         ClothShape::Grid(_) => "a grid",
-        ClothShape::Rope(_) | ClothShape::Path(_) => "a rope",
+        _ if cloth.shape.is_rope() => "a rope",
         _ => "made of its own triangles",
     };
     format!(
