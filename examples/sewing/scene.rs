@@ -78,7 +78,7 @@ fn lay_out(mut shop: Workshop) {
     let body = [0, 1].map(|layer| {
         let (name, away) = LAYERS[layer];
         let place = Transform::from_xyz(-WIDTH / 2.0, TOP, away);
-        let cloth = Cloth::new(columns, rows, spacing);
+        let cloth = (columns, rows, spacing);
         spawn_panel(&mut shop, name.into(), cloth, place, fabrics[layer].clone())
     });
     let shoulder = (SHOULDER * columns as f32) as u32;
@@ -107,7 +107,7 @@ fn lay_out(mut shop: Workshop) {
         let sleeve = [0, 1].map(|layer| {
             let (of, away) = LAYERS[layer];
             let place = sleeve_place(side, spacing * (across - 1) as f32, away);
-            let cloth = Cloth::new(along, across, spacing);
+            let cloth = (along, across, spacing);
             let fabric = fabrics[layer].clone();
             spawn_panel(&mut shop, format!("{name}, {of}"), cloth, place, fabric)
         });
@@ -139,21 +139,34 @@ fn sleeve_place(side: f32, width: f32, away: f32) -> Transform {
 fn spawn_panel(
     shop: &mut Workshop,
     name: String,
-    cloth: Cloth,
+    (columns, rows, spacing): (u32, u32, f32),
     place: Transform,
     fabric: Paint,
 ) -> Entity {
     let panel = (
         Name::new(name),
-        cloth,
+        Cloth::new(columns, rows, spacing),
         Pins::none(),
         ClothMaterial::COTTON,
+        seam_allowance(columns, rows),
         ClothSelfCollision::of_thickness(0.006),
         fabric,
         ShowClothGizmos::nothing(),
         place,
     );
     shop.commands.spawn(panel).id()
+}
+
+/// Edges are folded over twice where they are sewn or hemmed: three layers, and three times the mass.
+fn seam_allowance(columns: u32, rows: u32) -> ClothMaterialMap {
+    let is_edge = |row, column| row == 0 || row + 1 == rows || column == 0 || column + 1 == columns;
+    let added = (0..rows).flat_map(|row| {
+        (0..columns).map(move |column| if is_edge(row, column) { 2.0 } else { 0.0 })
+    });
+    ClothMaterialMap {
+        density: ClothFactor::added(ClothPaint::Vertices(added.collect())),
+        ..default()
+    }
 }
 
 fn sew(shop: &mut Workshop, name: &'static str, [first, second]: [(Entity, Pin); 2]) -> Entity {

@@ -1,19 +1,24 @@
-//! The same app without a window, where a script slashes the banner: a report and a picture.
+//! The same app without a window, where a script slashes the banner and tears off what still hangs: a report and a picture.
 
-use std::{process::ExitCode, time::Instant};
+use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_drape::{contact::intersections, prelude::*};
 use examples_shared::{
     headless::Run,
+    measured::TickTime,
     report::{Report, is_now},
 };
 use serde::Serialize;
 
 use crate::scene::Sword;
 
-/// When the sword slashes (s).
+/// When the sword slashes, when a hand pulls at the lower corner, and when it lets go (s).
 const SLASHED: f32 = 2.5;
+const PULLED: f32 = 3.5;
+const LET_GO: f32 = 5.0;
+/// How fast it pulls, towards where (m/s).
+const PULL: Vec3 = Vec3::new(0.4, -0.6, 0.5);
 
 /// The printed report.
 #[derive(Serialize, Resource, Default, Clone)]
@@ -35,8 +40,12 @@ struct Own {
 pub fn report(mut run: Run) -> ExitCode {
     run.app
         .init_resource::<Own>()
-        .add_systems(FixedUpdate, slash.before(ClothSystems::Prepare))
-        .add_systems(FixedFirst, begin_tick)
+        .add_systems(
+            FixedUpdate,
+            (slash, take_hold, pull)
+                .chain()
+                .before(ClothSystems::Prepare),
+        )
         .add_systems(FixedLast, measure);
     let report = Report {
         title: "A banner and a sword",
@@ -44,7 +53,7 @@ pub fn report(mut run: Run) -> ExitCode {
         figures: run.finish(),
         own: run.app.world().resource::<Own>().clone(),
     };
-    report.print(&mut run, |Report { own, .. }| {
+    let code = report.print(&mut run, |Report { own, .. }| {
         println!("  cut              {} edges by the sword", own.cut);
         println!("  torn             {} edges by its load", own.torn);
         println!(
@@ -59,7 +68,16 @@ pub fn report(mut run: Run) -> ExitCode {
             "  intersections    {} triangle pairs at most",
             own.intersections
         );
-    })
+    });
+    let Own {
+        cut, torn, pieces, ..
+    } = report.own;
+    let is_over = report.figures.simulated_seconds >= f64::from(LET_GO);
+    if is_over && (cut == 0 || torn == 0 || pieces < 2 || report.own.intersections > 0) {
+        eprintln!("The banner was to be cut, and then torn in two, without an intersection");
+        return ExitCode::FAILURE;
+    }
+    code
 }
 
 fn slash(time: Res<Time>, mut swords: Query<&mut Sword>) {
@@ -70,29 +88,58 @@ fn slash(time: Res<Time>, mut swords: Query<&mut Sword>) {
     }
 }
 
-/// When the tick began.
-#[derive(Resource)]
-struct Began(Instant);
+/// A hand takes the lower right corner.
+fn take_hold(
+    time: Res<Time>,
+    cloths: Query<(Entity, &ClothParticles, &ClothFrame, &Cloth)>,
+    mut commands: Commands,
+) {
+    if !is_now(&time, PULLED) {
+        return;
+    }
+    for (cloth, particles, frame, made) in &cloths {
+        let ClothShape::Grid(grid) = &made.shape else {
+            continue;
+        };
+        // Those of the whole banner keep their indices when it is cut.
+        let particle = grid.columns * grid.rows - 1;
+        let Some(place) = particles.position(particle as usize) else {
+            continue;
+        };
+        let target = frame.to_world(place);
+        let hand = ClothGrab {
+            cloth,
+            particle,
+            target,
+            ..default()
+        };
+        commands.spawn((hand, Transform::from_translation(target)));
+    }
+}
 
-fn begin_tick(mut commands: Commands) {
-    commands.insert_resource(Began(Instant::now()));
+fn pull(time: Res<Time>, mut hands: Query<(Entity, &mut ClothGrab)>, mut commands: Commands) {
+    for (entity, mut hand) in &mut hands {
+        hand.target += PULL * time.delta_secs();
+        if is_now(&time, LET_GO) {
+            commands.entity(entity).despawn();
+        }
+    }
 }
 
 fn measure(
-    began: Res<Began>,
+    tick: Res<TickTime>,
     mut torn: MessageReader<ClothTorn>,
     time: Res<Time>,
     cloths: Query<(&ClothBuilt, &ClothParticles)>,
     mut whole: Local<Option<f32>>,
     mut own: ResMut<Own>,
 ) {
-    let milliseconds = 1000.0 * began.0.elapsed().as_secs_f64();
     // The first ones build the cloth.
     let is_later = whole.is_some();
     match torn.is_empty() {
-        true if is_later => own.whole_ms = own.whole_ms.max(milliseconds),
+        true if is_later => own.whole_ms = own.whole_ms.max(tick.ms),
         true => {}
-        false => own.tearing_ms = own.tearing_ms.max(milliseconds),
+        false => own.tearing_ms = own.tearing_ms.max(tick.ms),
     }
     for torn in torn.read() {
         match time.elapsed_secs() < SLASHED + 0.5 {

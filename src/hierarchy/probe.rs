@@ -46,7 +46,7 @@ impl Core {
             Self::Segment([a, b]) => {
                 let (a, b) = (a.as_dvec3(), b.as_dvec3());
                 let (offset, along) = (point - a, b - a);
-                let t = (offset.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+                let t = (offset.dot(along) * along.length_squared().recip()).min(1.0);
                 // A segment of zero length is its first end.
                 if t > 0.0 { offset - along * t } else { offset }
             }
@@ -241,8 +241,14 @@ impl Probe {
 
     /// Equation (4): whether the distance of a particle at `position` from the core is less than the sum of both radii.
     /// In `f64`, so that all callers get the same result.
-    #[inline]
+    // Inlined, as above.
+    #[inline(always)]
     pub fn meets(&self, position: Vec3) -> bool {
-        self.core.distance(position) < self.reach()
+        let reach = self.reach();
+        match self.core {
+            Core::HalfSpace { .. } => self.core.distance(position) < reach,
+            // By squares, as a root takes longer than all the rest.
+            _ => reach > 0.0 && self.core.offset(position).length_squared() < reach * reach,
+        }
     }
 }

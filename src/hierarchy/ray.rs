@@ -58,7 +58,7 @@ impl RayQuery {
         max_distance: f32,
     ) -> Option<RayHit> {
         let rope = surface.rope_radius();
-        let reach = surface.face_reach() * (1.0 + stretch) * ROUNDING + rope.unwrap_or(0.0);
+        let reach = tree.face_reach(surface) * (1.0 + stretch) * ROUNDING + rope.unwrap_or(0.0);
         let mut around = tree.root_sphere(particles, stretch);
         if !around.radius().is_finite() {
             // Pieces that no spring joins.

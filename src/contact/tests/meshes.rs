@@ -86,7 +86,7 @@ fn a_face_reaches_to_its_farthest_corner() {
     };
     let at_rest = particles.longest_face_reach(&surface);
     assert!((at_rest / truth(&particles) - 1.0).abs() < 1.0e-6);
-    assert!(at_rest <= surface.face_reach() * (1.0 + 1.0e-6));
+    assert!(at_rest <= surface.face_reach(false) * (1.0 + 1.0e-6));
     let mut random = Random(5);
     for index in 0..particles.len() {
         let moved = particles.position(index).expect("it exists") + random.within(0.1);

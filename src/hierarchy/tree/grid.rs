@@ -48,6 +48,10 @@ impl Tree for GridTree {
         }
     }
 
+    fn diagonals(&self) -> bool {
+        self.diagonals
+    }
+
     fn layout(&self) -> Layout {
         self.layout
     }

@@ -61,6 +61,8 @@ pub struct GridTree {
     pub levels: Vec<Level>,
     pub ranges: Vec<Range<u32>>,
     pub layout: Layout,
+    /// Whether distances are also along the diagonals of cells.
+    pub diagonals: bool,
     spacing: Vec2,
 }
 
@@ -129,6 +131,7 @@ impl GridTree {
             ranges: levels.iter().map(nodes).collect(),
             levels,
             layout,
+            diagonals,
             spacing: grid.spacing(),
         }
     }

@@ -135,6 +135,11 @@ impl QuadTree {
         self.0.node(self.level_of(node), node)
     }
 
+    /// Largest distance at rest from a particle to a corner of its faces, along the springs (m).
+    pub(crate) fn face_reach(&self, surface: &Surface) -> f32 {
+        surface.face_reach(self.0.diagonals())
+    }
+
     /// A sphere around all particle centres, from the root's rest shape at a stretch
     /// ([`Stretch::bound`](crate::solver::Stretch)). It reads only one particle for each piece of the cloth.
     pub fn root_sphere(&self, particles: &ClothParticles, stretch: f32) -> BoundingSphere {

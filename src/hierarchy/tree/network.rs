@@ -159,6 +159,10 @@ impl Tree for NetworkTree {
         }
     }
 
+    fn diagonals(&self) -> bool {
+        false
+    }
+
     fn layout(&self) -> Layout {
         self.layout
     }

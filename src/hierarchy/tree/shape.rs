@@ -16,6 +16,9 @@ pub(crate) trait Tree: Debug + Send + Sync {
     /// A node of a level.
     fn node(&self, level: usize, node: u32) -> Node;
 
+    /// Whether distances are also along the diagonals of a grid's cells.
+    fn diagonals(&self) -> bool;
+
     /// The layout of its particles.
     fn layout(&self) -> Layout;
 

@@ -29,11 +29,11 @@ pub(crate) fn reach(
 }
 
 /// Largest distance of a triangle's points from the particle that stands for it (m): along a spring or two.
-pub(crate) fn cover(settings: &ContactSettings, stretch: f32, surface: &Surface) -> f32 {
+pub(crate) fn cover(settings: &ContactSettings, stretch: f32, built: &ClothBuilt) -> f32 {
     match settings.narrow_phase {
         NarrowPhase::Particles => 0.0,
         NarrowPhase::Auto | NarrowPhase::Triangles => {
-            surface.face_reach() * (1.0 + stretch) * (1.0 + 1.0e-5)
+            built.tree().face_reach(built.surface()) * (1.0 + stretch) * (1.0 + 1.0e-5)
         }
     }
 }
@@ -52,8 +52,7 @@ pub(crate) fn update_bounds(
     let root = built.tree().root_sphere(particles, stretch);
     let centre = frame.to_world(root.center.into());
     let settings = &scratch.contact_settings;
-    let around =
-        scratch.reach + settings.particle_radius + cover(settings, stretch, built.surface());
+    let around = scratch.reach + settings.particle_radius + cover(settings, stretch, built);
     let is_asleep = state.rest.is_asleep();
     let mut is_stale = bounds.is_searched || bounds.is_stale;
     if !is_asleep {
