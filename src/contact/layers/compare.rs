@@ -19,7 +19,7 @@ use super::{
 use crate::cloth::MapInline;
 
 /// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
-/// between them show where both bend, and only must not pass.
+/// between them show where both bend, and only must not pass. Edges of two ropes keep the whole thickness.
 const EDGES: f32 = 0.5;
 
 /// Largest distance that a pair of one cloth is kept apart, as a fraction of its distance at rest.
@@ -333,7 +333,10 @@ impl Features<'_> {
     fn edges_with_edges(&mut self) {
         let [own, other] = self.sides;
         let [edges, others] = [own, other].map_inline(|side| side.features(self.points).2);
-        let wanted = EDGES * self.thickness;
+        // Ropes have no faces to keep them apart.
+        let are_ropes = self.sides.iter().all(|side| side.sheet.is_rope());
+        let part = if are_ropes { 1.0 } else { EDGES };
+        let wanted = part * self.thickness;
         self.hits.of.clear();
         let reach_squared = (self.listed + wanted).powi(2);
         near_edges(&edges, &others, reach_squared, self.hits);

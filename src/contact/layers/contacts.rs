@@ -42,6 +42,10 @@ impl Contacts {
             let split = candidate.split as usize;
             let nearest = candidate.nearest;
             let [a, b] = of.map_inline(|cloth| cloths[cloth as usize].settings.friction);
+            // Strands side by side are nearest at ends of edges. No vertex and face push them.
+            let is_of_rope = of
+                .iter()
+                .any(|cloth| cloths[*cloth as usize].sheet.is_rope());
             let mut before = NOBODY;
             if split == VERTEX_AND_FACE {
                 let last = &mut members.last_of[members_of[0] as usize];
@@ -55,7 +59,7 @@ impl Contacts {
                 distance: nearest.distance,
                 normal: nearest.normal,
                 weights: nearest.weights,
-                is_pushed: split == VERTEX_AND_FACE || !nearest.is_at_border(),
+                is_pushed: split == VERTEX_AND_FACE || is_of_rope || !nearest.is_at_border(),
                 before,
                 may_pass: candidate.nearest.distance
                     <= near + LEFT_OF_THICKNESS * candidate.thickness,

@@ -28,6 +28,7 @@
 //! may touch stop for the rest of the tick, where they were last apart, and it is reported. Nothing is kept apart for some
 //! ticks after too many of these in a row, if any pin moves meanwhile, or if any patches began intersected. Resting layers
 //! are [held](mean_pushes) for a few sub-steps, while none can have come near enough to pass.
+//! No step assumes springs, so all of this holds for [torn cloth and ropes](sheet), too.
 
 mod bounds;
 mod certificate;

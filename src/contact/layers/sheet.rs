@@ -1,4 +1,23 @@
 //! The search structure of a surface, for contact with itself and with others.
+//!
+//! # Torn cloth
+//! The [guarantee](super) holds for torn cloth, too. No step of it assumes a spring. The boxes of 1 and the motion of 2 are measured on the
+//! particles where they are. A feature is the convex hull of particles of its own patch, so the patch's box contains it however
+//! its springs are torn. The tree over patches only orders the search: its boxes contain those of their children. The radii of the
+//! [rest-shape rule](crate::hierarchy), which paths along springs bound, are not used here.
+//!
+//! Only 3 assumes more: that a window is whole, and so convex at rest. A torn grid counts as a mesh and has no windows. All
+//! of its pairs of patches, neighbours as well, are found by their boxes.
+//!
+//! A particle that came apart is several, so the sides of a cut have no common particle, and are pairs like any others.
+//! At rest a cut has a width. Its sides are kept apart by at most half of that: otherwise each would push the other open. At the
+//! end of a cut both sides share a particle, and count as neighbours there. After each tear, and each mend, the pairs are found
+//! anew.
+//!
+//! # Ropes
+//! A rope has edges and no faces. Two ropes, or two strands of one, are a whole thickness apart along all of their edges. Edges without
+//! a common particle are at least a spacing apart along the rope, which is twice the thickness or more. So no distance at rest
+//! lowers the thickness, also where a path begins with strands side by side.
 
 use std::{ops::Range, sync::Arc};
 
@@ -176,7 +195,7 @@ impl Sheet {
     fn add_patch(&mut self, owned: &[u32], seen: &mut HashSet<[u32; 2]>) {
         let from = [self.particles.len(), self.faces.len(), self.edges.len()];
         self.particles.extend(owned);
-        if self.surface.rope_radius().is_some() {
+        if self.is_rope() {
             self.add_rope(owned);
         }
         for &particle in owned {
@@ -232,10 +251,16 @@ impl Sheet {
     }
 
     /// For a grid, the smallest distance at rest between two features without a common particle (m): from a corner of a
-    /// cell to its diagonal. 0 for a mesh.
+    /// cell to its diagonal. For a rope, that along it, wherever its path begins. 0 for a mesh.
     #[inline]
     pub(super) fn closest(&self) -> f32 {
         self.closest
+    }
+
+    /// Whether it has edges and no faces.
+    #[inline]
+    pub(super) fn is_rope(&self) -> bool {
+        self.surface.rope_radius().is_some()
     }
 
     /// The nodes of the tree over its patches, each before its children.

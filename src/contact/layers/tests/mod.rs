@@ -9,6 +9,7 @@ mod search;
 mod stopped;
 mod tangled;
 mod thrown;
+mod torn;
 
 use std::sync::Arc;
 
@@ -48,8 +49,12 @@ impl Sheeted {
             let cloth = Cloth::new(side, side, spacing).lying().centred();
             Surface::of_grid(&cloth.grid(Vec3::ONE).expect("a valid grid"))
         };
+        Self::of_surface(Arc::new(surface), place)
+    }
+
+    /// The same of any surface.
+    pub fn of_surface(surface: Arc<Surface>, place: impl Fn(Vec3) -> Vec3) -> Self {
         let material = ClothMaterial::default();
-        let surface = Arc::new(surface);
         let springs = Springs::of_surface(&surface, &material);
         let tree = QuadTree::of_surface(&surface, true);
         let solver = Solver::of_surface(&surface, &springs);

@@ -41,7 +41,7 @@ fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
     ]
 }
 
-type Feature = (Vec<u32>, Vec<u32>);
+pub(super) type Feature = (Vec<u32>, Vec<u32>);
 
 /// A pair, whichever way its features are named.
 fn named(first: &[u32], second: &[u32]) -> Feature {
@@ -58,51 +58,53 @@ fn named(first: &[u32], second: &[u32]) -> Feature {
     }
 }
 
-/// The distance of two features, by looking at all of both: in f64, by alternating projections, which ends in the nearest points
-/// of two convex sets.
-fn distance(first: &[DVec3], second: &[DVec3]) -> f64 {
-    let onto = |of: &[DVec3], point: DVec3| -> DVec3 {
-        let segment = |a: DVec3, b: DVec3| {
-            let along = b - a;
-            a + along * ((point - a).dot(along) / along.length_squared()).clamp(0.0, 1.0)
-        };
-        match *of {
-            [a] => a,
-            [a, b] => segment(a, b),
-            [a, b, c] => {
-                let normal = (b - a).cross(c - a);
-                let flat = point - normal * ((point - a).dot(normal) / normal.length_squared());
-                let side = |p: DVec3, q: DVec3| (q - p).cross(flat - p).dot(normal) >= 0.0;
-                if side(a, b) && side(b, c) && side(c, a) {
-                    return flat;
-                }
-                [segment(a, b), segment(b, c), segment(c, a)]
-                    .into_iter()
-                    .min_by(|p, q| {
-                        p.distance_squared(point)
-                            .total_cmp(&q.distance_squared(point))
-                    })
-                    .expect("three")
-            }
-            _ => unreachable!("a vertex, an edge or a face"),
-        }
+/// The point of a feature that is nearest to a point, in f64.
+pub(super) fn nearest(of: &[DVec3], point: DVec3) -> DVec3 {
+    let segment = |a: DVec3, b: DVec3| {
+        let along = b - a;
+        a + along * ((point - a).dot(along) / along.length_squared()).clamp(0.0, 1.0)
     };
+    match *of {
+        [a] => a,
+        [a, b] => segment(a, b),
+        [a, b, c] => {
+            let normal = (b - a).cross(c - a);
+            let flat = point - normal * ((point - a).dot(normal) / normal.length_squared());
+            let side = |p: DVec3, q: DVec3| (q - p).cross(flat - p).dot(normal) >= 0.0;
+            if side(a, b) && side(b, c) && side(c, a) {
+                return flat;
+            }
+            [segment(a, b), segment(b, c), segment(c, a)]
+                .into_iter()
+                .min_by(|p, q| {
+                    p.distance_squared(point)
+                        .total_cmp(&q.distance_squared(point))
+                })
+                .expect("three")
+        }
+        _ => unreachable!("a vertex, an edge or a face"),
+    }
+}
+
+/// The distance of two features, by looking at all of both: by alternating projections, which ends in the nearest points of two
+/// convex sets.
+fn distance(first: &[DVec3], second: &[DVec3]) -> f64 {
     let mut point = first[0];
     for _ in 0..400 {
-        point = onto(first, onto(second, point));
+        point = nearest(first, nearest(second, point));
     }
-    onto(second, point).distance(point)
+    nearest(second, point).distance(point)
 }
 
 /// The features of a surface, and which of them are near each other, by brute force.
-struct Brute {
+pub(super) struct Brute {
     faces: Vec<[u32; 3]>,
-    edges: Vec<[u32; 2]>,
+    pub edges: Vec<[u32; 2]>,
     vertices: u32,
 }
 
 impl Brute {
-    fn new(cloth: &Sheeted) -> Self {
+    pub fn new(cloth: &Sheeted) -> Self {
         let faces = cloth.surface.triangles().to_vec();
         let sides = faces
             .iter()
@@ -120,7 +122,7 @@ impl Brute {
 
     /// Calls `near` with all features of which a vertex is nearer than `reach` to a face, or an edge nearer than half of
     /// that to another.
-    fn near(&self, places: &[DVec3], reach: f64, mut near: impl FnMut(Feature, f64)) {
+    pub fn near(&self, places: &[DVec3], reach: f64, mut near: impl FnMut(Feature, f64)) {
         let at =
             |of: &[u32]| -> Vec<DVec3> { of.iter().map(|&each| places[each as usize]).collect() };
         let mut check = |first: &[u32], second: &[u32], reach: f64| {
@@ -159,18 +161,18 @@ impl Brute {
     }
 }
 
-fn feature(candidate: &Candidate) -> Feature {
+pub(super) fn feature(candidate: &Candidate) -> Feature {
     let (first, second) = candidate.particles.split_at(candidate.split as usize);
     named(first, second)
 }
 
-fn places(cloth: &Sheeted) -> Vec<DVec3> {
+pub(super) fn places(cloth: &Sheeted) -> Vec<DVec3> {
     let places = cloth.particles.positions();
     places.map(Vec3::as_dvec3).collect()
 }
 
 /// Rounding in f32 of distances of a metre.
-const ROUNDING: f64 = 1.0e-5;
+pub(super) const ROUNDING: f64 = 1.0e-5;
 
 #[test]
 fn no_pair_is_lost() {
