@@ -260,3 +260,29 @@ fn a_change_of_attachments_leaves_the_others_alone() {
     assert_eq!(particles(&app, flag).is_pinned((0, 11)), Some(false));
     assert_ne!(in_world(&app, flag, (3, 0)), before + moved);
 }
+
+/// Of targets of one name, a cloth takes the one with the nearest common ancestor: each copy of a figure has its own.
+#[test]
+fn a_copy_of_a_figure_has_its_own_target() {
+    let mut app = app();
+    let figures = [0.0, 3.0].map(|x| {
+        let figure = app.world_mut().spawn(Transform::from_xyz(x, 0.0, 0.0)).id();
+        let bone = (Name::new("shoulders"), Transform::default());
+        let bone = app.world_mut().spawn((bone, ChildOf(figure))).id();
+        let attached = ClothAttachments::new([(Pin::Row(0), "shoulders")]);
+        let cape = (Cloth::new(6, 6, 0.1), Pins::none(), attached);
+        let cape = app.world_mut().spawn((cape, ChildOf(figure))).id();
+        (bone, cape)
+    });
+    tick(&mut app, 2);
+    for (bone, cape) in figures {
+        let [before, others] = [cape, figures[0].1].map(|of| in_world(&app, of, (0, 0)));
+        change::<Transform>(&mut app, bone, |place| place.translation.y += 0.05);
+        tick(&mut app, 1);
+        // Some ten roundings of numbers of a few metres.
+        let moved = in_world(&app, cape, (0, 0)) - before;
+        assert!(moved.distance(0.05 * Vec3::Y) < 1.0e-5, "{moved}");
+        let first = in_world(&app, figures[0].1, (0, 0)) - others;
+        assert!(cape == figures[0].1 || first.length() < 1.0e-5, "{first}");
+    }
+}

@@ -12,6 +12,7 @@ mod crammed;
 mod creases;
 mod damping;
 mod drawing;
+mod dressing;
 mod embedded;
 mod envelope;
 mod faults;

@@ -53,7 +53,7 @@ pub struct ClothAttachment {
     pub target: ClothTarget,
 }
 
-/// The entity that pins follow.
+/// The entity that pins follow, or the cloth of a side of a [`ClothSeam`](crate::plugin::ClothSeam).
 #[derive(Reflect, Debug, Clone, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
@@ -61,8 +61,10 @@ pub struct ClothAttachment {
 pub enum ClothTarget {
     /// An entity.
     Entity(Entity),
-    /// The entity with this `Name`, for instance from a scene or a modelling program; if several have it, the one
-    /// spawned first. While there is none, the cloth stands still, with a fault.
+    /// The entity with this `Name`, for instance from a scene or a modelling program. If several have it, it is the one
+    /// that has the nearest common ancestor with the cloth or the seam. So each copy of a character finds its own. Among
+    /// equals it is the one spawned first. Once found, it stays the same one while it has the name, whatever comes later.
+    /// While there is none, the cloth stands still, with a fault; a seam has the fault itself.
     Named(String),
 }
 

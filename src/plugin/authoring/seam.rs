@@ -80,7 +80,8 @@ pub struct ClothSeam {
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothSeamSide {
-    /// The cloth.
+    /// The cloth. If several cloths have the name, it is the one that has the nearest common ancestor with the seam's own
+    /// entity, and among equals the one spawned first. A seam that has begun keeps its cloth while that has the name.
     #[entities]
     pub cloth: ClothTarget,
     /// The particles.

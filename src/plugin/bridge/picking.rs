@@ -1,5 +1,7 @@
 //! Bevy's picking: pointers hit cloth, and drag it.
 
+#[cfg(feature = "mesh")]
+use bevy::ecs::query::Without;
 use bevy::{
     app::{App, Plugin, PreUpdate},
     camera::{
@@ -15,7 +17,7 @@ use bevy::{
         query::{Has, With},
         resource::Resource,
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Commands, Query, Res},
+        system::{Commands, Query, Res, SystemParam},
     },
     log::error,
     picking::{
@@ -30,6 +32,8 @@ use bevy::{
 };
 
 use super::ray_cast::ClothRayCast;
+#[cfg(feature = "mesh")]
+use crate::plugin::draw::ClothRenderMesh;
 use crate::{cloth::Cloth, plugin::authoring::ClothGrab};
 
 /// Lets Bevy's pointers hit cloth, so that observers of `Pointer<Click>` and its like work on cloths. Dragging a cloth
@@ -37,6 +41,10 @@ use crate::{cloth::Cloth, plugin::authoring::ClothGrab};
 ///
 /// Needs Bevy's picking, which `DefaultPlugins` include with the feature `bevy_picking`. Add Bevy's `MeshPickingPlugin`,
 /// too, if other meshes are to hide cloth from pointers. A `Pickable::IGNORE` beside a `Cloth` keeps pointers off it.
+///
+/// A cloth that is hidden is hit while a camera shows a [`ClothRenderMesh`](crate::plugin::ClothRenderMesh) that it drives.
+/// Where another backend hits that mesh, pointers drag its cloth, if that is behind the same point of the picture. A
+/// `Pickable::IGNORE` beside the mesh keeps pointers off the mesh, and off its hidden cloth.
 ///
 /// The extra data of a hit are a [`ClothHit`](crate::plugin::ClothHit), unless the hit is that of another backend. Then
 /// a [`ClothRayCast`] along the pointer's ray finds it.
@@ -103,15 +111,74 @@ struct PointerHand {
     distance: f32,
 }
 
+/// The entities that pointers may hit.
+#[derive(SystemParam)]
+struct Pickables<'w, 's> {
+    all: Query<
+        'w,
+        's,
+        (
+            Option<&'static ViewVisibility>,
+            Option<&'static RenderLayers>,
+            Option<&'static Pickable>,
+        ),
+    >,
+    cloths: Query<'w, 's, (), With<Cloth>>,
+    #[cfg(feature = "mesh")]
+    driven: Query<'w, 's, (Entity, &'static ClothRenderMesh), Without<Cloth>>,
+}
+
+impl Pickables<'_, '_> {
+    fn pickable(&self, entity: Entity) -> Option<&Pickable> {
+        self.all
+            .get(entity)
+            .ok()
+            .and_then(|(.., pickable)| pickable)
+    }
+
+    fn is_hoverable(&self, entity: Entity) -> bool {
+        (self.pickable(entity)).is_none_or(|pickable| pickable.is_hoverable)
+    }
+
+    /// Whether a camera of these layers shows an entity.
+    fn is_shown(&self, entity: Entity, layers: &RenderLayers) -> bool {
+        self.all.get(entity).is_ok_and(|(visibility, own, _)| {
+            visibility.is_none_or(|visibility| visibility.get())
+                && own.cloned().unwrap_or_default().intersects(layers)
+        })
+    }
+
+    /// Whether a camera of these layers shows a cloth, or a mesh that it drives, to pointers.
+    fn is_seen(&self, cloth: Entity, layers: &RenderLayers) -> bool {
+        self.is_hoverable(cloth)
+            && (self.is_shown(cloth, layers) || self.is_mesh_seen(cloth, layers))
+    }
+
+    #[cfg(feature = "mesh")]
+    fn is_mesh_seen(&self, cloth: Entity, layers: &RenderLayers) -> bool {
+        let is_seen = |mesh| self.is_hoverable(mesh) && self.is_shown(mesh, layers);
+        let mut driven = self.driven.iter();
+        driven.any(|(mesh, drives)| drives.cloth == cloth && is_seen(mesh))
+    }
+
+    #[cfg(not(feature = "mesh"))]
+    fn is_mesh_seen(&self, _: Entity, _: &RenderLayers) -> bool {
+        false
+    }
+
+    /// The cloth that an entity is, or that drives its mesh.
+    fn cloth_of(&self, entity: Entity) -> Option<Entity> {
+        #[cfg(feature = "mesh")]
+        let entity = (self.driven.get(entity)).map_or(entity, |(_, drives)| drives.cloth);
+        (self.cloths.contains(entity) && self.is_hoverable(entity)).then_some(entity)
+    }
+}
+
 /// The picking backend: which cloth each pointer is over.
 fn point_at_cloths(
     rays: Res<RayMap>,
     cameras: Query<(&Camera, Option<&RenderLayers>)>,
-    cloths: Query<(
-        Option<&ViewVisibility>,
-        Option<&RenderLayers>,
-        Option<&Pickable>,
-    )>,
+    pickables: Pickables,
     mut ray_cast: ClothRayCast,
     mut hits: MessageWriter<PointerHits>,
 ) {
@@ -120,26 +187,18 @@ fn point_at_cloths(
             continue;
         };
         let layers = layers.cloned().unwrap_or_default();
-        let is_seen = |cloth: Entity| {
-            cloths.get(cloth).is_ok_and(|(visibility, own, pickable)| {
-                visibility.is_none_or(|visibility| visibility.get())
-                    && own.cloned().unwrap_or_default().intersects(&layers)
-                    && pickable.is_none_or(|pickable| pickable.is_hoverable)
-            })
-        };
         let mut picks: Vec<(Entity, HitData)> = Vec::new();
         let mut next = |picks: &[(Entity, HitData)]| {
             let is_new = |cloth| picks.iter().all(|(known, _)| *known != cloth);
-            ray_cast.cast_where(ray, f32::INFINITY, |cloth| is_new(cloth) && is_seen(cloth))
+            ray_cast.cast_where(ray, f32::INFINITY, |cloth| {
+                is_new(cloth) && pickables.is_seen(cloth, &layers)
+            })
         };
         while let Some(hit) = next(&picks) {
             let (point, normal) = (Some(hit.point), Some(hit.normal));
             let data = HitData::new_with_extra(id.camera, hit.distance, point, normal, hit);
             picks.push((hit.cloth, data));
-            let pickable = cloths
-                .get(hit.cloth)
-                .ok()
-                .and_then(|(.., pickable)| pickable);
+            let pickable = pickables.pickable(hit.cloth);
             if pickable.is_none_or(|pickable| pickable.should_block_lower) {
                 break;
             }
@@ -154,15 +213,17 @@ fn point_at_cloths(
 fn take_pressed(
     press: On<Pointer<Press>>,
     button: Res<GrabButton>,
-    cloths: Query<(), With<Cloth>>,
+    pickables: Pickables,
     rays: Res<RayMap>,
     mut ray_cast: ClothRayCast,
     mut commands: Commands,
 ) {
-    let cloth = press.entity;
     // A press goes on to the parents of what was pressed, too.
-    let is_own = press.original_event_target() == cloth;
-    if press.button != button.0 || !(is_own && cloths.contains(cloth)) {
+    let is_own = press.original_event_target() == press.entity;
+    let Some(cloth) = pickables.cloth_of(press.entity) else {
+        return;
+    };
+    if press.button != button.0 || !is_own {
         return;
     }
     let id = RayId::new(press.hit.camera, press.pointer_id);

@@ -1,21 +1,16 @@
 //! Finds the targets of attachments, and makes pins follow them.
 
 use bevy::{
-    ecs::{
-        change_detection::Mut,
-        entity::Entity,
-        name::Name,
-        system::{Query, SystemParam},
-    },
+    ecs::{change_detection::Mut, entity::Entity, system::SystemParam},
     math::Affine3A,
     transform::helper::TransformHelper,
 };
 
-use super::carry::set_motion;
+use super::{carry::set_motion, named::NamedTargets};
 use crate::{
     cloth::{ClothError, ClothParticles, Surface},
     plugin::{
-        authoring::{Attached, ClothAttachment, ClothTarget},
+        authoring::{Attached, ClothAttachment},
         frame::{ClothFrame, Places, global_transform, rigid},
         state::{ClothBuilt, ClothState},
     },
@@ -28,49 +23,30 @@ pub(crate) struct Targets<'w, 's> {
     pub transforms: TransformHelper<'w, 's>,
     /// Where cloths are, also below what is disabled.
     pub cloths: Places<'w, 's>,
-    names: Query<'w, 's, (Entity, &'static Name)>,
+    named: NamedTargets<'w, 's, ()>,
 }
 
 impl Targets<'_, '_> {
-    /// The entity that an attachment names; `known` is the one that it was in the last tick.
+    /// The entity that an attachment of `cloth` names; `known` is the one that it was in the last tick.
     fn entity(
         &self,
+        cloth: Entity,
         attachment: &ClothAttachment,
         known: Option<Entity>,
     ) -> Result<Entity, ClothError> {
-        let name = match &attachment.target {
-            ClothTarget::Entity(entity) => return Ok(*entity),
-            ClothTarget::Named(name) => name,
-        };
-        let is_so_called = |entity: &Entity| {
-            self.names
-                .get(*entity)
-                .is_ok_and(|(_, its)| its.as_str() == name)
-        };
-        let find = || {
-            let called = self.names.iter().filter(|(_, its)| its.as_str() == name);
-            let exists = |entity: &Entity| global_transform(&self.transforms, *entity).is_some();
-            called
-                .map(|(entity, _)| entity)
-                .filter(exists)
-                .min_by_key(|entity| (entity.generation().to_bits(), entity.index_u32()))
-        };
-        known
-            .filter(is_so_called)
-            .or_else(find)
-            .ok_or_else(|| ClothError::NoTargetNamed {
-                pin: format!("{:?}", attachment.pin),
-                name: name.clone(),
-            })
+        let exists = |entity| global_transform(&self.transforms, entity).is_some();
+        let pin = || format!("{:?}", attachment.pin);
+        (self.named).find(&attachment.target, cloth, known, exists, pin)
     }
 
-    /// Finds the places of the targets of attachments; `known` are the attachments of the last tick.
+    /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
     ///
     /// # Errors
     /// [`ClothError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
     /// [`ClothError::NoTargetNamed`]; or the error of a pin.
     pub fn find(
         &self,
+        cloth: Entity,
         attachments: &[ClothAttachment],
         known: &[ClothAttachment],
         surface: &Surface,
@@ -85,7 +61,7 @@ impl Targets<'_, '_> {
                 .try_for_each(|each| each.pin.validate(surface))?;
         }
         for (index, attachment) in attachments.iter().enumerate() {
-            let target = self.entity(attachment, entities.get(index).copied())?;
+            let target = self.entity(cloth, attachment, entities.get(index).copied())?;
             let transform = global_transform(&self.transforms, target);
             let affine = transform.map(|transform| transform.affine());
             let place = affine.filter(|affine| affine.inverse().is_finite());

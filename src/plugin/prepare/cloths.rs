@@ -287,6 +287,7 @@ fn apply_motion(
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
     targets.find(
+        cloth.entity,
         attachments,
         &state.attachments.given,
         built.surface(),

@@ -20,6 +20,7 @@ mod freeze;
 mod grabs;
 mod islands;
 mod levels;
+mod named;
 mod neighbour;
 mod notice;
 mod preparing;

@@ -6,7 +6,6 @@ use bevy::{
     ecs::{
         entity::Entity,
         lifecycle::Remove,
-        name::Name,
         observer::On,
         query::{QueryData, With},
         resource::Resource,
@@ -15,11 +14,11 @@ use bevy::{
     math::Vec3,
 };
 
-use super::neighbour::Neighbour;
+use super::{named::NamedTargets, neighbour::Neighbour};
 use crate::{
     cloth::{Cloth, ClothError, SewnSide, Surface, stitches},
     plugin::{
-        authoring::{ClothSeam, ClothSeamSide, ClothStitches, ClothTarget, Ordered},
+        authoring::{ClothSeam, ClothStitches, Ordered},
         frame::relative,
         naming::Part,
         state::ClothFault,
@@ -71,7 +70,7 @@ impl Seams {
 pub(crate) fn prepare_seams(
     mut seams: Query<SeamQuery>,
     mut cloths: Query<Neighbour>,
-    names: Query<(Entity, &Name), With<Cloth>>,
+    names: NamedTargets<With<Cloth>>,
     mut all: ResMut<Seams>,
     mut commands: Commands,
 ) {
@@ -120,36 +119,26 @@ fn wake(of: [Entity; 2], cloths: &mut Query<Neighbour>) {
     }
 }
 
-/// The cloth that a side names.
-fn cloth_of(
-    side: &ClothSeamSide,
-    names: &Query<(Entity, &Name), With<Cloth>>,
-) -> Result<Entity, ClothError> {
-    let name = match &side.cloth {
-        ClothTarget::Entity(entity) => return Ok(*entity),
-        ClothTarget::Named(name) => name,
-    };
-    let called = names.iter().filter(|(_, its)| its.as_str() == name);
-    called
-        .map(|(entity, _)| entity)
-        .min_by_key(|entity| (entity.generation().to_bits(), entity.index_u32()))
-        .ok_or_else(|| ClothError::NoTargetNamed {
-            pin: format!("{:?}", side.along),
-            name: name.clone(),
-        })
-}
-
 impl SeamQueryItem<'_, '_> {
+    /// The cloths that its sides name: those that it joins already, as long as they are so called.
+    fn cloths(&self, names: &NamedTargets<With<Cloth>>) -> Result<[Entity; 2], ClothError> {
+        let [first, second] = [0, 1].map(|place| {
+            let side = self.seam.sides()[place];
+            let known = self.stitches.cloths.map(|cloths| cloths[place]);
+            let pin = || format!("{:?}", side.along);
+            names.find(&side.cloth, self.entity, known, |_| true, pin)
+        });
+        Ok([first?, second?])
+    }
+
     /// Finds its stitches. `None` if it joins nothing, or before it has begun.
     fn prepare(
         &mut self,
         cloths: &mut Query<Neighbour>,
-        names: &Query<(Entity, &Name), With<Cloth>>,
+        names: &NamedTargets<With<Cloth>>,
     ) -> Result<Option<ActiveSeam>, ClothError> {
         self.seam.validate()?;
-        let sides = self.seam.sides();
-        let [first, second] = sides.map(|side| cloth_of(side, names));
-        let of = [first?, second?];
+        let of = self.cloths(names)?;
         let is_known = self.stitches.known.as_ref() == Some(self.seam);
         let mut surfaces: [Option<Arc<Surface>>; 2] = [None, None];
         let mut orders = of.map(|cloth| (Default::default(), cloth));

@@ -1,0 +1,69 @@
+//! Finds the entities that attachments and seams name.
+
+use std::iter;
+
+use bevy::ecs::{
+    entity::Entity,
+    entity_disabling::Disabled,
+    hierarchy::ChildOf,
+    name::Name,
+    query::{Allow, QueryFilter},
+    system::{Query, SystemParam},
+};
+
+use crate::{cloth::ClothError, plugin::authoring::ClothTarget};
+
+/// Names of the entities that pass `F`, and the hierarchy.
+#[derive(SystemParam)]
+pub(crate) struct NamedTargets<'w, 's, F: QueryFilter + Send + Sync + 'static> {
+    names: Query<'w, 's, (Entity, &'static Name), F>,
+    /// Also of what is disabled for a while.
+    known: Query<'w, 's, &'static Name, (F, Allow<Disabled>)>,
+    parents: Query<'w, 's, &'static ChildOf, Allow<Disabled>>,
+}
+
+impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
+    /// The entity that `target` names, as seen from the entity `from`. A `known` one stays while it has the name. Of others
+    /// for which `exists` holds, it is the one with the nearest common ancestor. Among equals it is the one spawned first.
+    ///
+    /// # Errors
+    /// [`ClothError::NoTargetNamed`], with the text of a pin.
+    pub fn find(
+        &self,
+        target: &ClothTarget,
+        from: Entity,
+        known: Option<Entity>,
+        exists: impl Fn(Entity) -> bool,
+        pin: impl Fn() -> String,
+    ) -> Result<Entity, ClothError> {
+        let name = match target {
+            ClothTarget::Entity(entity) => return Ok(*entity),
+            ClothTarget::Named(name) => name,
+        };
+        let is_so_called =
+            |entity: &Entity| (self.known.get(*entity)).is_ok_and(|its| its.as_str() == name);
+        let find = || {
+            let called = self.names.iter().filter(|(_, its)| its.as_str() == name);
+            called
+                .map(|(entity, _)| entity)
+                .filter(|entity| exists(*entity))
+                .min_by_key(|entity| {
+                    let steps = self.steps_up(from, *entity).unwrap_or(usize::MAX);
+                    (steps, entity.generation().to_bits(), entity.index_u32())
+                })
+        };
+        known
+            .filter(is_so_called)
+            .or_else(find)
+            .ok_or_else(|| ClothError::NoTargetNamed {
+                pin: pin(),
+                name: name.clone(),
+            })
+    }
+
+    /// How far above `from` the first entity is that is `to`, or above it. 0 is `from` itself.
+    fn steps_up(&self, from: Entity, to: Entity) -> Option<usize> {
+        let line = |of: Entity| iter::once(of).chain(self.parents.iter_ancestors(of));
+        line(from).position(|above| line(to).any(|of| of == above))
+    }
+}
