@@ -53,14 +53,25 @@ pub fn report(mut run: Run) -> ExitCode {
         figures: run.finish(),
         own: run.app.world().resource::<Own>().clone(),
     };
-    report.print(&mut run, |Report { own, .. }| {
+    let code = report.print(&mut run, |Report { own, .. }| {
         println!("  pegs taken off   {}", own.pegs_off);
         println!(
             "  hand             took hold {:.2} m away; pulled {:.2} of {:.2} m: the sheet is taut; stretched by {:.1} % at most",
             own.grabbed_at_m, own.pulled_m, own.wanted_m, own.stretch_percent
         );
         println!("  intersections    {} triangle pairs at most", own.intersections);
-    })
+    });
+    let own = &report.own;
+    let expected = [
+        (own.pegs_off == 1, "a peg is taken off"),
+        (own.pulled_m > 0.5, "the hand pulls at the sheet"),
+        (
+            own.stretch_percent < 15.0,
+            "the sheet stays within the limit of stretch",
+        ),
+        (own.intersections == 0, "no cloth passes through itself"),
+    ];
+    report.check(code, LET_GO, &expected)
 }
 
 fn take_off_a_peg(

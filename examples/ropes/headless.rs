@@ -48,7 +48,7 @@ pub fn report(mut run: Run) -> ExitCode {
         figures: run.finish(),
         own: run.app.world().resource::<Own>().clone(),
     };
-    report.print(&mut run, |Report { own, .. }| {
+    let code = report.print(&mut run, |Report { own, .. }| {
         println!(
             "  plank            {} kg, {:.3} m high at rest, swings by {:.2} m",
             own.plank_kg, own.rest_m, own.swing_m
@@ -58,7 +58,18 @@ pub fn report(mut run: Run) -> ExitCode {
             "  ropes            {:.2} % longer than at rest, at most",
             own.stretch_percent
         );
-    })
+    });
+    let own = &report.own;
+    let expected = [
+        (own.rest_m > 0.4, "the ropes hold the plank"),
+        (own.swing_m > 0.1, "it swings"),
+        (own.gap_mm < 1.0, "the knots hold"),
+        (
+            own.stretch_percent < 2.0,
+            "the ropes are as long as they were",
+        ),
+    ];
+    report.check(code, 2.0 * PUSHED, &expected)
 }
 
 fn measure(

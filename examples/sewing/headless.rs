@@ -33,7 +33,7 @@ pub fn report(mut run: Run) -> ExitCode {
         figures: run.finish(),
         own: run.app.world().resource::<Own>().clone(),
     };
-    report.print(&mut run, |Report { own, .. }| {
+    let code = report.print(&mut run, |Report { own, .. }| {
         println!("  side seams       {:.1e} m apart at most", own.sides_gap_m);
         println!(
             "  sleeves          {:.1e} m apart at most",
@@ -44,7 +44,18 @@ pub fn report(mut run: Run) -> ExitCode {
             "  stretch          {:.1} % at most once it is dressed",
             own.stretch_percent
         );
-    })
+    });
+    let own = &report.own;
+    let expected = [
+        (own.sides_gap_m < 1.0e-3, "the side seams are closed"),
+        (own.sleeves_gap_m < 0.01, "the sleeves are sewn on"),
+        (own.shoulders_m > 1.4, "the figure wears the shirt"),
+        (
+            own.stretch_percent < 15.0,
+            "the shirt stays within the limit of stretch",
+        ),
+    ];
+    report.check(code, 2.0 * SETTLED, &expected)
 }
 
 fn measure(

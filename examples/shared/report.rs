@@ -43,6 +43,18 @@ impl<Own: Serialize> Report<Own> {
         }
         code
     }
+
+    /// Fails, too, if a run of at least so many seconds did not end as it should: which is a condition, and what to say.
+    pub fn check(&self, printed: ExitCode, seconds: f32, expected: &[(bool, &str)]) -> ExitCode {
+        if self.figures.simulated_seconds < f64::from(seconds) {
+            return printed;
+        }
+        let missed = expected.iter().filter(|(is_met, _)| !is_met);
+        missed.fold(printed, |_, (_, wanted)| {
+            eprintln!("Not so: {wanted}");
+            ExitCode::FAILURE
+        })
+    }
 }
 
 /// The same for a report without figures of all cloths.
