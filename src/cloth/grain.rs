@@ -13,8 +13,9 @@ use super::{
 };
 
 /// The direction of the warp on a mesh, for a [`ClothMaterial`](crate::cloth::ClothMaterial) with a
-/// [`weft`](crate::cloth::ClothMaterial::weft). Ignored by a grid, whose warp runs down its columns, and by any other
-/// material. Without this component, the warp runs along V of the mesh's texture.
+/// [`weft`](crate::cloth::ClothMaterial::weft), or a [`ClothTearing`](crate::cloth::ClothTearing) of two strengths. Ignored by a
+/// grid, whose warp runs down its columns, and by any other cloth. Without this component, the warp of such a material runs along V of
+/// the mesh's texture.
 ///
 /// ```
 /// use bevy::math::Vec3;

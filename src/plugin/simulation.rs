@@ -187,12 +187,12 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     let hands = hold_cloths
         .run_if(any_with_component::<ClothGrab>)
         .ambiguous_with(TransformSystems::Propagate);
+    // A cloth that has lost its last `ClothTears` is mended, which is reported, too.
     let tears = (
         report_tears,
         tear_cloths.run_if(any_with_component::<ClothTearing>),
     )
-        .chain()
-        .run_if(any_with_component::<ClothTears>);
+        .chain();
     // Once more after the last one is gone, to wake what it held.
     let seams = prepare_seams.run_if(any_with_component::<ClothSeam>.or_else(Seams::were_there));
     app.configure_sets(

@@ -41,7 +41,7 @@ fn app_with_scenes(files: &Dir) -> App {
 const TICKS: usize = 32;
 
 /// A kite of triangles that is pinned in several ways, and hangs at a pole by its name and at a hand by its entity; a
-/// grid; and a ball in the way of each.
+/// grid; a ball in the way of each; and a rope along a path.
 fn spawn_all(world: &mut World) -> Vec<Entity> {
     let hand = world.spawn(Transform::from_xyz(0.3, 1.0, 0.2)).id();
     let pole = (Name::new("pole"), Transform::from_xyz(-2.0, 0.0, 0.0));
@@ -93,11 +93,24 @@ fn spawn_all(world: &mut World) -> Vec<Entity> {
         Transform::from_xyz(0.0, 1.7, 0.3),
     );
     let grid = world.spawn(grid).id();
+    let path = [
+        Vec3::ZERO,
+        Vec3::new(0.1, 0.7, 0.0),
+        Vec3::new(1.0 / 3.0, 0.7, -0.2),
+        Vec3::new(0.6, 0.1, 0.0),
+    ];
+    let rope = (
+        Name::new("rope"),
+        Cloth::rope_along(path, 0.07, 0.013),
+        Pins::new([Pin::Index(0), Pin::Index(9)]),
+        Transform::from_xyz(3.0, 0.5, 0.0).with_rotation(Quat::from_rotation_x(0.4)),
+    );
+    let rope = world.spawn(rope).id();
     let balls = [-0.15, 0.15].map(|z| {
         let place = Transform::from_xyz(0.35, 1.4, z);
         world.spawn((ClothCollider::ball(0.25), place)).id()
     });
-    let mut all = vec![hand, pole, kite, grid];
+    let mut all = vec![hand, pole, kite, grid, rope];
     all.extend(balls);
     all
 }
@@ -162,14 +175,14 @@ fn what_is_read_moves_as_what_was_written() {
     assert!(text.contains("pole") && text.contains("inf"), "{text}");
     let mut other = read(&text);
     // Other entities than in the first app.
-    let names = ["kite", "grid"];
+    let names = ["kite", "grid", "rope"];
     let cloths = names.map(|name| {
         let cloth = named(&mut original, name).expect("it was spawned");
         let read = named(&mut other, name).expect("it was read");
         (cloth, read)
     });
     assert!(cloths.iter().all(|(cloth, read)| cloth != read));
-    let mut touched = [false; 2];
+    let mut touched = [false; 3];
     for _ in 0..TICKS {
         tick(&mut original, 1);
         tick(&mut other, 1);
@@ -178,7 +191,11 @@ fn what_is_read_moves_as_what_was_written() {
             *touched |= stats(&other, read).contacts > 0;
         }
     }
-    assert_eq!(touched, [true, true]);
+    assert_eq!(touched, [true, true, false]);
+    // Its path: 0.71, 0.31 and 0.69 m in parts of 0.07 m.
+    let [.., (_, rope)] = cloths;
+    assert_eq!(surface(&other, rope).len(), 1 + 24);
+    assert!(surface(&other, rope).rope_radius().is_some());
     for (cloth, read) in cloths {
         assert!(other.world().get::<ClothFault>(read).is_none());
         let component = original.world().get::<Cloth>(cloth);

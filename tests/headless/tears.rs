@@ -60,7 +60,7 @@ pub(crate) fn cut_at(app: &mut App, height: f32) -> usize {
 }
 
 /// Mass of the free particles (kg), and their momentum (kg m/s).
-fn motion(app: &App, cloth: Entity) -> (f64, Vec3) {
+pub(crate) fn motion(app: &App, cloth: Entity) -> (f64, Vec3) {
     let particles = particles(app, cloth);
     let (mut mass, mut momentum) = (0.0, Vec3::ZERO);
     for index in 0..particles.len() {
@@ -89,7 +89,11 @@ pub(crate) fn top() -> Pins {
 }
 
 /// The edges of faces for both of whose ends `is_there` holds at rest.
-fn edges_where(app: &App, cloth: Entity, is_there: impl Fn(Vec3) -> bool) -> Vec<[u32; 2]> {
+pub(crate) fn edges_where(
+    app: &App,
+    cloth: Entity,
+    is_there: impl Fn(Vec3) -> bool,
+) -> Vec<[u32; 2]> {
     let surface = surface(app, cloth);
     let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]];
     let sides = surface.triangles().iter().flat_map(sides);
@@ -745,7 +749,8 @@ fn what_is_torn_is_rolled_back() {
     }
 }
 
-/// All edges at once: each face is a piece of its own, and falls.
+/// All edges at once: each face is a piece of its own, and falls. The mass stays: shares of areas are rounded by some 10⁻⁷. No two faces
+/// cross, though those that hang from pins swing among those that fall.
 #[test]
 fn all_edges_may_tear_at_once() {
     for cloth in [Cloth::new(12, 12, 0.1), mesh(1.1, 1.1, 0.1)] {
@@ -757,8 +762,13 @@ fn all_edges_may_tear_at_once() {
             edges_where(&app, cloth, |_| true),
             surface(&app, cloth).triangles().len(),
         );
+        let (mass, _) = motion(&app, cloth);
         tear(&mut app, cloth, edges);
-        tick(&mut app, 30);
+        for ticks in [1, 9, 20] {
+            tick(&mut app, ticks);
+            assert_eq!(crossings(&app, cloth), 0);
+        }
+        assert!((motion(&app, cloth).0 / mass - 1.0).abs() < 1.0e-6);
         assert_eq!(surface(&app, cloth).pieces(), faces);
         assert_eq!(particles(&app, cloth).len(), 3 * faces);
         assert!(particles(&app, cloth).validate().is_ok());

@@ -9,7 +9,6 @@ use bevy::{
         query::Changed,
         system::{Query, ResMut},
     },
-    math::Vec3,
     tasks::{AsyncComputeTaskPool, TaskPool},
 };
 
@@ -106,8 +105,12 @@ pub(super) fn follow_tears(
     let torn = particles.torn(&before, surface, &parents, wanted.has_layers);
     **particles = torn;
     let count = recipe.tears.count_beyond(built.tears());
-    let place = place_of_tear([&recipe.tears, built.tears()], before.len(), particles);
-    built.unreported_tear = place.map(|place| (place, count));
+    let at = ends_of_tear(
+        [&recipe.tears, built.tears()],
+        before.len(),
+        particles.len(),
+    );
+    built.unreported_tear = at.map(|ends| (ends, count));
     hold_parts(surface, &parents, state);
     state.pose.take_parts(&parents);
     state.creases = creases_of_torn(&before, surface, &state.creases);
@@ -125,18 +128,12 @@ pub(super) fn follow_tears(
     Ok(Build::Resampled)
 }
 
-/// The place of the first new particle, or the middle of the last torn edge, if nothing opened (m).
-fn place_of_tear(
-    [now, then]: [&ClothTears; 2],
-    before: usize,
-    particles: &ClothParticles,
-) -> Option<Vec3> {
-    if before < particles.len() {
-        return Some(particles.position_at(before));
+/// The first new particle, twice, or the ends of the last torn edge, if nothing opened. Both particles exist as long as this surface does.
+fn ends_of_tear([now, then]: [&ClothTears; 2], before: usize, after: usize) -> Option<[u32; 2]> {
+    if before < after {
+        return Some([before as u32; 2]);
     }
-    let edge = now.edges().last().or(then.edges().last())?;
-    let [a, b] = edge.map(|end| particles.position_at(end as usize));
-    Some((a + b) / 2.0)
+    now.edges().last().or(then.edges().last()).copied()
 }
 
 /// Attaches the new parts of attached particles, too.

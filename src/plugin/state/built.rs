@@ -59,9 +59,9 @@ pub struct ClothBuilt {
     pub(crate) pinned: Vec<u32>,
     #[reflect(ignore)]
     pub(crate) pins_version: u32,
-    /// The place of the last tear, in the cloth's frame (m), and how many edges it tore, until that is reported.
+    /// The two particles between which the last tear is, and how many edges it tore, until that is reported.
     #[reflect(ignore)]
-    pub(crate) unreported_tear: Option<(Vec3, usize)>,
+    pub(crate) unreported_tear: Option<([u32; 2], usize)>,
 }
 
 /// The inputs of a cloth, besides the recipe of its surface.

@@ -64,14 +64,18 @@ impl GameQueryItem<'_, '_> {
         Some((&**tears, tears.last_changed()))
     }
 
-    /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft.
+    /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft. Where its strength alone
+    /// differs, only a [`ClothGrain`] of the game's.
     pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
         let shape = &self.cloth.shape;
         let is_grid = shape.is_rope() || matches!(shape, ClothShape::Grid(_));
-        if is_grid || !self.material?.is_woven() {
+        let own = self.grain.as_ref();
+        let is_woven = self.material.is_some_and(ClothMaterial::is_woven);
+        let differs = |of: &ClothTearing| of.strength != of.weft_strength;
+        let is_stronger = own.is_some() && self.torn.1.is_some_and(differs);
+        if is_grid || !(is_woven || is_stronger) {
             return None;
         }
-        let own = self.grain.as_ref();
         Some(own.map_or((&BY_TEXTURE, None), |grain| {
             (&**grain, Some(grain.last_changed()))
         }))

@@ -26,7 +26,7 @@ pub struct ClothTorn {
     pub cloth: Entity,
     /// Number of edges that are torn since the last tick.
     pub edges: usize,
-    /// Where: the first of the particles that came apart, in the world (m); or the middle of an edge, if none did.
+    /// Where, as the tick ends: the first of the particles that came apart, in the world (m); or the middle of an edge, if none did.
     pub place: Vec3,
     /// Number of pieces that the cloth now has.
     pub pieces: usize,
@@ -70,24 +70,32 @@ pub(crate) fn tear_cloths(
 
 /// Sends a message of each cloth that was torn in this tick, in the order of [`ClothOrder`].
 pub(crate) fn report_tears(
-    mut cloths: Query<(Entity, Option<&ClothOrder>, &ClothFrame, &mut ClothBuilt)>,
+    mut cloths: Query<(
+        Entity,
+        Option<&ClothOrder>,
+        &ClothFrame,
+        &ClothParticles,
+        &mut ClothBuilt,
+    )>,
     mut messages: MessageWriter<ClothTorn>,
     mut torn: Local<Vec<Ordered>>,
 ) {
     torn.clear();
-    for (cloth, order, _, built) in &cloths {
+    for (cloth, order, .., built) in &cloths {
         if built.unreported_tear.is_some() {
             torn.push((order.copied().unwrap_or_default(), cloth));
         }
     }
     torn.sort_unstable();
     let mut each = cloths.iter_many_mut(torn.iter().map(|(_, cloth)| cloth));
-    while let Some((cloth, _, frame, mut built)) = each.fetch_next() {
-        if let Some((place, edges)) = built.unreported_tear.take() {
+    while let Some((cloth, _, frame, particles, mut built)) = each.fetch_next() {
+        if let Some((ends, edges)) = built.unreported_tear.take() {
+            // A game may have emptied the particles since the tear opened: then all that is known is where the cloth is.
+            let [a, b] = ends.map(|end| particles.position(end as usize).unwrap_or_default());
             messages.write(ClothTorn {
                 cloth,
                 edges,
-                place: frame.to_world(place),
+                place: frame.to_world((a + b) / 2.0),
                 pieces: built.surface().pieces(),
             });
         }

@@ -45,6 +45,7 @@ pub fn act(world: &mut World) {
             one(world, &mut pool, &mut random);
             for &entity in &pool.all {
                 keep_to_layers(world, entity);
+                keep_short(world, entity);
             }
         });
     });
@@ -58,6 +59,20 @@ fn keep_to_layers(world: &mut World, entity: Entity) {
         if layers.is_none_or(|layers| layers.interacts_with(ClothLayers::new(!OTHERS, !OTHERS))) {
             entity.insert(others);
         }
+    }
+}
+
+/// A path of millions of particles is valid, but takes minutes.
+fn keep_short(world: &mut World, entity: Entity) {
+    let Some(ClothShape::RopePath(path)) = world.get::<Cloth>(entity).map(|cloth| &cloth.shape)
+    else {
+        return;
+    };
+    let parts = path.points.windows(2).map(|of| of[0].distance(of[1]));
+    // Of more than 2²⁴ there is a fault at once.
+    if (1.0e3..2.0e7).contains(&(parts.sum::<f32>() / path.spacing)) {
+        let short = Cloth::rope_along([Vec3::ZERO, Vec3::X], 0.1, 0.02);
+        world.entity_mut(entity).insert(short);
     }
 }
 
@@ -188,7 +203,7 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
     let [columns, rows] = [2 + random.below(8) as u32, 2 + random.below(8) as u32];
     let grid = || Cloth::new(columns, rows, 0.1);
     let ball = |radius| ClothCollider::ball(radius);
-    let entity = match random.below(15) {
+    let entity = match random.below(16) {
         0..=2 => world.spawn((grid(), place)).id(),
         3 => world
             .spawn((grid(), Pins::none(), ClothSelfCollision::default(), place))
@@ -242,6 +257,12 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
                 .spawn((rope, ClothSelfCollision::default(), place))
                 .id()
         }
+        14 => {
+            let rope = rope_along(random);
+            world
+                .spawn((rope, ClothSelfCollision::default(), place))
+                .id()
+        }
         11 => {
             let cloth = random.pick(&pool.all).copied();
             let grab = ClothGrab {
@@ -255,6 +276,23 @@ fn spawn(world: &mut World, pool: &mut Pool, random: &mut Random) {
         _ => world.spawn((ClothWindZone::default(), place)).id(),
     };
     pool.all.push(entity);
+}
+
+/// A rope along a path that may be too short, turn back on itself, or lead nowhere.
+fn rope_along(random: &mut Random) -> Cloth {
+    let nowhere = [Vec3::NAN, Vec3::INFINITY, Vec3::splat(1.0e11), Vec3::MAX];
+    let mut points: Vec<Vec3> = Vec::new();
+    for _ in 0..random.below(7) {
+        let known = random.pick(&points).copied();
+        let point = match random.below(12) {
+            0 => nowhere[random.below(nowhere.len())],
+            1..=2 => known.unwrap_or_default(),
+            3 => known.unwrap_or_default() + 1.0e-7 * Vec3::X,
+            _ => Vec3::new(random.part(), random.part(), random.part()),
+        };
+        points.push(point);
+    }
+    Cloth::rope_along(points, 0.1, 0.02)
 }
 
 /// Writes particles as a game does, by their own functions.

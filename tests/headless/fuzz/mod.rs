@@ -21,6 +21,7 @@ use self::{
     acts::{Pool, act},
     mutate::OTHERS,
     random::Random,
+    tears::UnderLoad,
 };
 use crate::support::*;
 
@@ -177,6 +178,12 @@ struct Counts {
     faults: usize,
     /// Ticks of seams without a fault.
     seams: usize,
+    /// Tears that opened.
+    opened: usize,
+    /// Edges that load tore.
+    under_load: usize,
+    /// Snapshots that changed what was torn.
+    restored: usize,
     bits: usize,
     substeps: u64,
     slowest: f64,
@@ -196,8 +203,13 @@ fn late(world: &mut World) {
     world.resource_mut::<Pool>().is_late = false;
 }
 
-/// Saves the world and the other app's, or puts both back, as an act has asked for.
-fn follow_request([app, alone]: [&mut App; 2], saved: &mut Option<[ClothWorldSnapshot; 2]>) {
+/// Saves the world and the other app's, or puts both back, as an act has asked for. Counts what changes tears.
+fn follow_request(
+    [app, alone]: [&mut App; 2],
+    saved: &mut Option<[ClothWorldSnapshot; 2]>,
+    counts: &mut Counts,
+) {
+    let before = tears::all(app.world_mut());
     let Some(saves) = app.world_mut().resource_mut::<Pool>().request.take() else {
         return;
     };
@@ -208,6 +220,12 @@ fn follow_request([app, alone]: [&mut App; 2], saved: &mut Option<[ClothWorldSna
         && own.restore(app.world_mut()).is_ok()
     {
         other.restore(alone.world_mut()).expect("nothing has gone");
+        // The plugin gives tears to a cloth that had none.
+        let is_torn = |cloth: &Entity, tears: &ClothTears| {
+            before.get(cloth).map_or(&[][..], ClothTears::edges) != tears.edges()
+        };
+        let after = tears::all(app.world_mut());
+        counts.restored += usize::from(after.iter().any(|(cloth, tears)| is_torn(cloth, tears)));
     }
 }
 
@@ -225,6 +243,29 @@ fn count(world: &mut World, counts: &mut Counts) {
         .sum::<u64>();
 }
 
+/// Counts tears, and acts between the systems of a tick, if it is to.
+fn add_systems(app: &mut App, acts_between: bool) {
+    use ClothSystems::{Integrate, Prepare, Query, Rebuild, WriteBack};
+    app.init_resource::<UnderLoad>().add_systems(
+        FixedUpdate,
+        (
+            tears::note.after(Integrate).before(WriteBack),
+            tears::count.after(WriteBack),
+        ),
+    );
+    if acts_between {
+        app.add_systems(
+            FixedUpdate,
+            (
+                between.after(Prepare).before(Rebuild),
+                between.after(Rebuild).before(Query),
+                between.after(Query).before(Integrate),
+                late.after(Integrate).before(tears::note),
+            ),
+        );
+    }
+}
+
 fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
     let (mut app, control) = app_with_control();
     let (mut alone, same) = app_with_control();
@@ -235,18 +276,7 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
         roots: roots.to_vec(),
         ..default()
     });
-    if acts_between {
-        use ClothSystems::{Integrate, Prepare, Query, Rebuild, WriteBack};
-        app.add_systems(
-            FixedUpdate,
-            (
-                between.after(Prepare).before(Rebuild),
-                between.after(Rebuild).before(Query),
-                between.after(Query).before(Integrate),
-                late.after(Integrate).before(WriteBack),
-            ),
-        );
-    }
+    add_systems(&mut app, acts_between);
     let mut saved: Option<[ClothWorldSnapshot; 2]> = None;
     let mut is_in_wind = false;
     let mut of_world = Random(seed ^ 0xABCD);
@@ -257,7 +287,7 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
         let before = of_world.clone();
         set_world(&mut app, &mut of_world);
         set_world(&mut alone, &mut before.clone());
-        follow_request([&mut app, &mut alone], &mut saved);
+        follow_request([&mut app, &mut alone], &mut saved, counts);
         let world = app.world_mut();
         // Before the tick any may be written.
         world.resource_mut::<Pool>().written.clear();
@@ -270,6 +300,8 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
         counts.slowest = counts.slowest.max(start.elapsed().as_secs_f64());
         alone.update();
         bakes::record(app.world_mut());
+        let told = messages::<ClothTorn>(&mut app);
+        counts.opened += told.iter().filter(|torn| torn.edges > 0).count();
         let context = format!("seed {seed}, tick {number}, acts between systems: {acts_between}");
         if elapsed(&app) > before
             && let Some(wrong) = wrong(&mut app, &there)
@@ -287,6 +319,7 @@ fn run(seed: u64, acts_between: bool, counts: &mut Counts) {
         counts.bits += 32 * own.len();
     }
     counts.acts += app.world().resource::<Pool>().acts;
+    counts.under_load += app.world().resource::<UnderLoad>().edges;
 }
 
 #[test]
@@ -303,12 +336,15 @@ fn garbage_harms_nobody_else() {
                 cloth_ticks,
                 faults,
                 seams,
+                opened,
+                under_load,
+                restored,
                 bits,
                 substeps,
                 slowest,
             } = &counts;
             println!(
-                "{} runs: {acts} acts, {cloth_ticks} cloth-ticks, {faults} of them with a fault, {seams} seam-ticks without one, {substeps} sub-steps, {bits} bits compared, the slowest tick {slowest:.2} s",
+                "{} runs: {acts} acts, {cloth_ticks} cloth-ticks, {faults} of them with a fault, {seams} seam-ticks without one, {opened} tears opened, {under_load} edges torn under load, {restored} snapshots of other tears, {substeps} sub-steps, {bits} bits compared, the slowest tick {slowest:.2} s",
                 seed + 1 - first
             );
         }
@@ -316,4 +352,9 @@ fn garbage_harms_nobody_else() {
     // It is worth the name.
     assert!(counts.bits > 0 && counts.faults > 0 && counts.faults < counts.cloth_ticks);
     assert!(counts.seams > 0, "no seam has worked");
+    let torn = [counts.opened, counts.under_load, counts.restored];
+    assert!(
+        torn.iter().all(|count| *count > 0),
+        "tears opened, edges torn under load, snapshots of other tears: {torn:?}"
+    );
 }

@@ -1,5 +1,7 @@
 //! Tears by hand, by a blade and under load, and mended ones.
 
+use std::collections::BTreeMap;
+
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_drape::prelude::*;
 
@@ -11,6 +13,42 @@ use super::{
 
 /// Particles of a cloth that is torn along all of its edges, at most: six times as many may come of it.
 const MOST: usize = 120;
+
+/// Counts edges that load tears.
+#[derive(Resource, Default)]
+pub struct UnderLoad {
+    /// Number of torn edges before the plugin looks for more.
+    before: BTreeMap<Entity, usize>,
+    pub edges: usize,
+}
+
+/// Notes tears that there are already, after the last act of a tick.
+pub fn note(
+    cloths: Query<(Entity, &ClothTears), With<ClothTearing>>,
+    mut found: ResMut<UnderLoad>,
+) {
+    let torn = cloths.iter();
+    found.before = torn
+        .map(|(cloth, tears)| (cloth, tears.edges().len()))
+        .collect();
+}
+
+/// Counts those that came since then.
+pub fn count(cloths: Query<(Entity, &ClothTears)>, mut found: ResMut<UnderLoad>) {
+    for (cloth, tears) in &cloths {
+        let before = found.before.get(&cloth);
+        found.edges += before.map_or(0, |before| tears.edges().len() - before);
+    }
+}
+
+/// The tears of all cloths.
+pub fn all(world: &mut World) -> BTreeMap<Entity, ClothTears> {
+    let mut cloths = world.query::<(Entity, &ClothTears)>();
+    let cloths = cloths.iter(world);
+    cloths
+        .map(|(cloth, tears)| (cloth, tears.clone()))
+        .collect()
+}
 
 /// Tears a cloth, lets load tear it, or mends it.
 pub fn tear(world: &mut World, entity: Entity, random: &mut Random) {

@@ -2,6 +2,7 @@
 
 mod ids;
 pub mod scene;
+mod tears;
 mod threads;
 
 use bevy::prelude::*;

@@ -1,0 +1,89 @@
+//! Snapshots of cloth that tears.
+
+use bevy::prelude::*;
+use bevy_drape::prelude::*;
+
+use crate::{
+    support::*,
+    tears::{cut_at, mesh, tears, top},
+};
+
+fn sheets() -> [Cloth; 2] {
+    [Cloth::new(13, 13, 0.1), mesh(1.2, 1.2, 0.1)]
+}
+
+/// The ticks from here on: particles and tears after each.
+fn go_on(app: &mut App, cloth: Entity) -> Vec<(ClothParticles, ClothTears)> {
+    let next = |_| {
+        tick(app, 1);
+        assert_eq!(app.world().get::<ClothFault>(cloth), None);
+        (particles(app, cloth).clone(), tears(app, cloth).clone())
+    };
+    (0..24).map(next).collect()
+}
+
+/// Other tears are being built in the background as a snapshot is restored: of a whole cloth, of one between a cut and its opening, and of a
+/// torn one. It goes on to the last bit as it did without them.
+#[test]
+fn tears_that_are_being_built_are_forgotten() {
+    let cases = [(None, None), (None, Some(-0.33)), (Some(-0.33), None)];
+    for (cloth, (opened, listed)) in sheets()
+        .into_iter()
+        .flat_map(|cloth| cases.map(|case| (cloth.clone(), case)))
+    {
+        let mut app = app();
+        let parts = (cloth, top(), ClothTears::default());
+        let cloth = app.world_mut().spawn(parts).id();
+        tick(&mut app, 20);
+        if let Some(height) = opened {
+            assert!(cut_at(&mut app, height) > 5);
+            tick(&mut app, 4);
+        }
+        if let Some(height) = listed {
+            assert!(cut_at(&mut app, height) > 5);
+        }
+        let saved = ClothSnapshot::of(app.world(), cloth).expect("a cloth");
+        let expected = go_on(&mut app, cloth);
+        saved.restore(app.world_mut(), cloth).expect("the cloth");
+        assert!(cut_at(&mut app, -0.62) > 5);
+        // The end of a frame, in which it begins to be built.
+        app.world_mut().run_schedule(Last);
+        saved.restore(app.world_mut(), cloth).expect("the cloth");
+        assert!(go_on(&mut app, cloth) == expected, "{opened:?} {listed:?}");
+    }
+}
+
+/// A snapshot from the middle of a tear that runs under load goes on to the last bit, in the same app and in one that has just spawned
+/// its cloth: with the same edges in the same ticks.
+#[test]
+fn a_tear_that_runs_is_rolled_back() {
+    for cloth in sheets() {
+        let mut app = app();
+        // Its weight is 1.4 to 2 N/m.
+        let parts = (cloth, top(), ClothMaterial::COTTON);
+        let torn = app
+            .world_mut()
+            .spawn((parts.clone(), ClothTears::default()))
+            .id();
+        tick(&mut app, 40);
+        let tearing = ClothTearing::new(0.5);
+        app.world_mut().entity_mut(torn).insert(tearing);
+        let mut ticks = 0;
+        while tears(&app, torn).edges().len() < 3 {
+            ticks += 1;
+            assert!(ticks < 60, "it tears");
+            tick(&mut app, 1);
+        }
+        let saved = ClothSnapshot::of(app.world(), torn).expect("a cloth");
+        let count = tears(&app, torn).edges().len();
+        let expected = go_on(&mut app, torn);
+        let last = &expected.last().expect("ticks").1;
+        assert!(last.edges().len() > count + 3, "it runs on");
+        saved.restore(app.world_mut(), torn).expect("the cloth");
+        assert!(go_on(&mut app, torn) == expected);
+        let mut other = crate::support::app();
+        let clone = other.world_mut().spawn((parts, tearing)).id();
+        saved.restore(other.world_mut(), clone).expect("the cloth");
+        assert!(go_on(&mut other, clone) == expected);
+    }
+}
