@@ -99,6 +99,21 @@ fn worldly(house: &House) -> Found {
     worldly
 }
 
+/// What sub-steps would have to name to search for tears: a cloth tears as a tick ends, so one that may not tear pays nothing.
+fn tearing(house: &House) -> Found {
+    let mut tearing = Found::new();
+    for (at, module) in &house.0 {
+        let is_substep = ["solver", "contact", "plugin::step"]
+            .iter()
+            .any(|of| at == of || at.starts_with(&format!("{of}::")));
+        let named = module.all_paths().flatten();
+        for name in named.filter(|name| is_substep && name.starts_with("ClothTear")) {
+            tearing.insert(format!("{}: {name}", module.file));
+        }
+    }
+    tearing
+}
+
 /// Blocks of inherent methods where nobody would look for them. They may be in a type's own module, in children of
 /// it, or if it has none in its folder; but a floor's whole folder is too large for that.
 fn strayed(house: &House) -> Found {
@@ -171,6 +186,11 @@ fn files_import_each_other_in_no_circle() {
 #[test]
 fn children_of_a_folder_import_each_other_in_no_circle() {
     held(CIRCLES, &circles_of_children(&HOUSE.imports()));
+}
+
+#[test]
+fn no_substep_searches_for_tears() {
+    held(&[], &tearing(&HOUSE));
 }
 
 #[test]

@@ -496,7 +496,7 @@ fn one_along_a_path_falls_over_and_changes() {
     assert!(end(&app).distance(-Vec3::Z) < 0.01);
 }
 
-/// A path that doubles back, so that neighbours begin in one place: it hangs down in the end. A flat one stands on its fold like a pole.
+/// A path that doubles back, so that neighbours begin in one place: it unfolds and hangs down. A flat one stands on its fold, like a pole.
 #[test]
 fn one_that_doubles_back_unfolds() {
     let path = [Vec3::ZERO, Vec3::NEG_Y, Vec3::ZERO];
@@ -506,17 +506,15 @@ fn one_that_doubles_back_unfolds() {
         let rope = if is_flat { rope.flat() } else { rope };
         let rope = spawn(&mut app, (rope, damped()));
         let mut longest = 0.0_f32;
-        for tick_count in 0..2400 {
+        for _ in 0..1200 {
             tick(&mut app, 1);
             longest = longest.max(length(&places(&app, rope)) / 2.0 - 1.0);
-            if tick_count % 300 == 299 {
-                println!("{parts} {is_flat} {tick_count}: {:?}", places(&app, rope));
-            }
         }
         assert_eq!(app.world().get::<ClothFault>(rope), None);
         assert!(longest < 0.1, "{longest}");
         let end = *places(&app, rope).last().expect("an end");
-        println!("{end}");
+        let hangs = end.distance(2.0 * Vec3::NEG_Y) < 0.01;
+        assert!(hangs || is_flat, "{parts}: {end}");
     }
 }
 

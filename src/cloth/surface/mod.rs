@@ -247,10 +247,7 @@ impl Surface {
 
     /// Largest distance from a particle to a corner of its faces, along stretch springs and, with `diagonals`, shear springs (m).
     pub(crate) fn face_reach(&self, diagonals: bool) -> f32 {
-        match diagonals {
-            true => self.extent.longest_spring,
-            false => self.extent.face_reach,
-        }
+        [self.extent.face_reach, self.extent.longest_spring][usize::from(diagonals)]
     }
 
     /// Rest length of the longest spring between neighbours, including shear springs (m).

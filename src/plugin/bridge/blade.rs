@@ -9,17 +9,21 @@ use bevy::{
     math::Vec3,
 };
 
+use super::surface_now::surface_now;
 use crate::{
     cloth::{ClothParticles, ClothTears, Cut},
-    plugin::{frame::ClothFrame, state::ClothBuilt},
+    plugin::{
+        frame::ClothFrame,
+        state::{ClothBuilt, ClothState},
+    },
 };
 
 /// Cuts cloths with a blade: a sword, scissors, the mouse. Only cloths with [`ClothTears`] or
 /// [`ClothTearing`](crate::cloth::ClothTearing) are cut.
 ///
 /// A cut runs along the edges of the cloth's faces that are nearest to it: between two faces, if the way from the middle of one
-/// to the middle of the other goes through the swept area. It opens in the next tick. Cloth is where it was at the end of the
-/// last tick.
+/// to the middle of the other goes through the swept area. It opens in the next tick, or in the first one in which a cloth that stands
+/// still goes on. Cloth is where it was at the end of the last tick.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -51,6 +55,7 @@ type Cuttable = (
     &'static ClothBuilt,
     &'static ClothParticles,
     &'static ClothFrame,
+    &'static ClothState,
     &'static mut ClothTears,
 );
 
@@ -69,13 +74,16 @@ impl ClothBlade<'_, '_> {
         includes: impl Fn(Entity) -> bool,
     ) -> usize {
         let mut torn = 0;
-        for (entity, built, particles, frame, mut tears) in &mut self.cloths {
-            if !(built.matches(particles) && includes(entity)) {
+        for (entity, built, particles, frame, state, mut tears) in &mut self.cloths {
+            if !includes(entity) {
                 continue;
             }
+            let Some(surface) = surface_now(built, state, Some(&tears), particles) else {
+                continue;
+            };
             let to_cloth = frame.isometry().inverse();
             let [from, to] = [from, to].map(|blade| blade.map(|end| to_cloth * end));
-            let edges = Cut::new(from, to).edges(built.surface(), particles);
+            let edges = Cut::new(from, to).edges(&surface, particles);
             let new = tears.bypass_change_detection().tear_all(edges);
             if new > 0 {
                 tears.set_changed();

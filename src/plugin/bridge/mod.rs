@@ -18,6 +18,7 @@ mod rapier;
 mod rapier_body;
 mod ray_cast;
 mod snapshot;
+mod surface_now;
 
 #[cfg(feature = "bake")]
 pub use bake::{BakeError, ClothBake};

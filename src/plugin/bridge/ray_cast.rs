@@ -1,5 +1,7 @@
 //! Rays that hit cloth.
 
+use std::borrow::Cow;
+
 use bevy::{
     ecs::{
         entity::Entity,
@@ -9,9 +11,10 @@ use bevy::{
     transform::components::Transform,
 };
 
+use super::surface_now::surface_now;
 use crate::{
-    cloth::ClothParticles,
-    hierarchy::RayQuery,
+    cloth::{ClothParticles, ClothTears},
+    hierarchy::{QuadTree, RayQuery},
     plugin::{
         authoring::ClothGrab,
         frame::ClothFrame,
@@ -49,6 +52,7 @@ type Hittable = (
     &'static ClothParticles,
     &'static ClothFrame,
     &'static ClothState,
+    Option<&'static ClothTears>,
 );
 
 /// Where a ray hits a cloth.
@@ -100,19 +104,25 @@ impl ClothRayCast<'_, '_> {
         includes: impl Fn(Entity) -> bool,
     ) -> Option<ClothHit> {
         let mut first: Option<ClothHit> = None;
-        for (entity, built, particles, frame, state) in &self.cloths {
-            if !(built.matches(particles) && includes(entity)) {
+        for (entity, built, particles, frame, state, tears) in &self.cloths {
+            if !includes(entity) {
                 continue;
             }
+            let Some(surface) = surface_now(built, state, tears, particles) else {
+                continue;
+            };
             let farthest = first.map_or(max_distance, |hit| hit.distance);
             let to_cloth = frame.isometry().inverse();
             let Ok(direction) = Dir3::new(to_cloth.rotation * *ray.direction) else {
                 continue;
             };
             let own = Ray3d::new(to_cloth * ray.origin, direction);
-            let (surface, tree) = (built.surface(), built.tree());
+            let tree = match &surface {
+                Cow::Borrowed(_) => Cow::Borrowed(built.tree()),
+                Cow::Owned(surface) => Cow::Owned(QuadTree::of_surface(surface, false)),
+            };
             let stretch = state.stretch.bound;
-            let found = (self.query).cast(surface, tree, particles, stretch, own, farthest);
+            let found = (self.query).cast(&surface, &tree, particles, stretch, own, farthest);
             let Some(found) = found else { continue };
             let face = found.particles;
             let [a, b, c] = face.map(|particle| particles.position_at(particle as usize));

@@ -53,6 +53,41 @@ fn tears_that_are_being_built_are_forgotten() {
     }
 }
 
+/// A cut between a snapshot and the next tick is the one that was made there at first, and a ray hits the same, although what is built
+/// belongs to later tears: of a whole cloth, and of a torn one.
+#[test]
+fn a_cut_right_after_a_snapshot_is_as_before() {
+    for (cloth, opened) in sheets()
+        .into_iter()
+        .flat_map(|cloth| [None, Some(-0.33)].map(|opened| (cloth.clone(), opened)))
+    {
+        let mut app = app();
+        let parts = (cloth, top(), ClothTears::default());
+        let cloth = app.world_mut().spawn(parts).id();
+        tick(&mut app, 20);
+        if let Some(height) = opened {
+            assert!(cut_at(&mut app, height) > 5);
+            tick(&mut app, 4);
+        }
+        let saved = ClothSnapshot::of(app.world(), cloth).expect("a cloth");
+        let cut = |app: &mut App| {
+            let hit = app
+                .world_mut()
+                .run_system_cached(|mut rays: ClothRayCast| {
+                    rays.cast(Ray3d::new(Vec3::new(0.57, -0.51, 3.0), Dir3::NEG_Z), 9.0)
+                })
+                .expect("a system");
+            (hit.expect("the sheet is there"), cut_at(app, -0.62))
+        };
+        let first = cut(&mut app);
+        assert!(first.1 > 5);
+        let expected = go_on(&mut app, cloth);
+        saved.restore(app.world_mut(), cloth).expect("the cloth");
+        assert_eq!(cut(&mut app), first);
+        assert!(go_on(&mut app, cloth) == expected, "{opened:?}");
+    }
+}
+
 /// A snapshot from the middle of a tear that runs under load goes on to the last bit, in the same app and in one that has just spawned
 /// its cloth: with the same edges in the same ticks.
 #[test]
