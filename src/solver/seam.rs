@@ -3,7 +3,7 @@
 //! A stitch is a constraint of extended position-based dynamics (Macklin, Müller and Chentanez 2016): its point x and the
 //! point Σ wᵢ xᵢ of the other side are no farther apart than a gap that closes, and at last in the same place. The springs of both
 //! cloths are solved first, each cloth for itself. So a seam stretches the springs beside it by what the other cloth falls in a
-//! sub-step, times its rows: as the square of the sub-step. To apply the last sub-step's force before the springs makes that
+//! sub-step, times its rows: as the square of the sub-step. By default, a cloth takes as many sub-steps as keep that within a tenth. To apply the last sub-step's force before the springs makes that
 //! worse: the forces swing.
 
 use bevy::math::{Isometry3d, Vec3};
@@ -19,6 +19,9 @@ const ROUNDS: usize = 2;
 /// The largest slope of the curve by which it closes, over that of a line.
 const STEEPEST: f32 = 1.5;
 
+/// The largest stretch that the load of a seam may leave in the springs beside it.
+const GIVEN: f32 = 0.1;
+
 /// A seam from tick to tick.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -30,6 +33,8 @@ pub(crate) struct Seam {
     since: f32,
     /// The longest gap as it began (m).
     longest: f32,
+    /// The largest acceleration by which its load moved a particle as the last tick ended (m/s²).
+    load: f32,
     #[cfg_attr(feature = "serialize", serde(skip))]
     states: Vec<State>,
     /// As the tick began.
@@ -118,6 +123,16 @@ impl Thread {
         let each = self.nodes.iter().zip(self.weights);
         each.map(|(&node, weight)| weight * weight * states[node as usize].inverse_mass)
             .sum()
+    }
+
+    /// The largest inverse mass of its particles, each times its weight (1/kg).
+    fn lightest(&self, states: &[State]) -> f32 {
+        let each = self.nodes.iter().zip(self.weights);
+        let of = each.map(|(&node, weight)| {
+            let state = states.get(node as usize);
+            weight.abs() * state.map_or(0.0, |state| state.inverse_mass)
+        });
+        of.fold(0.0, f32::max)
     }
 
     /// Moves its particles by an impulse times a sub-step (kg m).
@@ -249,6 +264,17 @@ impl Seam {
     /// Ends a tick of this many seconds.
     pub fn end(&mut self, seconds: f32, pull: &SeamPull) {
         self.since = (self.since + seconds).min(self.duration(pull));
+        let states = &self.states;
+        let closed = self.threads.iter().filter(|thread| thread.is_closed);
+        let loads = closed.map(|thread| thread.pull.length() * thread.lightest(states));
+        // Not NaN, as of a cloth that is lost.
+        self.load = loads.fold(0.0, f32::max);
+    }
+
+    /// Sub-steps of a tick of this many seconds in which its load stretches springs of this length (m) beside it by no more than it may:
+    /// a sub-step moves a particle away from the next one by its acceleration, times the square of the sub-step.
+    pub fn needed(&self, spacing: f32, seconds: f32) -> u32 {
+        (seconds * (self.load / (GIVEN * spacing)).sqrt()).ceil() as u32
     }
 
     /// Closes its gaps at the end of a sub-step of `dt` (s), `seconds` after the tick began. Returns the largest push (m).

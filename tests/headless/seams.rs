@@ -220,7 +220,8 @@ fn a_sheet_hangs_from_a_sheet() {
         let most = if is_mesh { 1.0e-3 } else { IN_A_SUBSTEP };
         assert!(worst[0] < most, "{worst:?}");
         assert!(worst[1] < 0.02, "{worst:?}");
-        assert!(worst[2] < worst[3] + by_seam, "{worst:?} {by_seam}");
+        // The threads beside it give, too: less than a fifth of that.
+        assert!(worst[2] < worst[3] + 1.2 * by_seam, "{worst:?} {by_seam}");
         assert!(
             (highest - lowest - length).abs() < 0.02,
             "{} {length}",

@@ -18,6 +18,9 @@ use crate::{
 
 pub(crate) type SewnSeams<'w, 's> = Query<'w, 's, (&'static ClothSeam, &'static mut ClothStitches)>;
 
+/// How many times as many sub-steps a load may ask for.
+const MOST: u32 = 4;
+
 /// The seams of an island, in the order in which they are solved.
 #[derive(Default)]
 pub(super) struct Sewing<'w>(Few<Sewn<'w>>);
@@ -89,18 +92,27 @@ impl<'w> Sewing<'w> {
         }));
     }
 
-    /// Sub-steps that hold two cloths together: those of one that is as long as both.
+    /// Sub-steps that hold two cloths together: those of one that is as long as both, and up to [`MOST`] times as many under a load.
     pub fn needed(&self, members: &[Member]) -> u32 {
-        let each = self.0.iter().filter_map(|Sewn { members: of, .. }| {
-            let along = |of: usize| {
+        let each = self.0.iter().filter_map(|sewn| {
+            let of = sewn.members;
+            let surface = |of: usize| {
                 let cloth = &members[of].cloth;
                 let is_free = cloth.scratch.substepping == Substepping::Automatic;
-                is_free.then(|| cloth.built.surface().particles_along())
+                is_free.then(|| cloth.built.surface())
             };
-            let [a, b] = [along(of[0])?, along(of[1])?];
-            let both = if of[0] == of[1] { a } else { a + b };
+            let both = [surface(of[0])?, surface(of[1])?];
+            let [a, b] = both.map(|surface| surface.particles_along());
+            let along = if of[0] == of[1] { a } else { a + b };
             let seconds = of.iter().find_map(|&of| members[of].step)?.seconds;
-            Some(Substepping::needed(both, seconds))
+            // Some springs of a mesh are shorter than is typical.
+            let spacing = both.map(|surface| {
+                let of = surface.spacing();
+                (of.shortest + of.typical) / 2.0
+            });
+            let unloaded = Substepping::needed(along, seconds);
+            let loaded = (sewn.stitches.seam).needed(spacing[0].min(spacing[1]), seconds);
+            Some(loaded.clamp(unloaded, MOST * unloaded))
         });
         each.max().unwrap_or(0)
     }
