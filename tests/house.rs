@@ -107,7 +107,8 @@ fn tearing(house: &House) -> Found {
             .iter()
             .any(|of| at == of || at.starts_with(&format!("{of}::")));
         let named = module.all_paths().flatten();
-        for name in named.filter(|name| is_substep && name.starts_with("ClothTear")) {
+        let is_of_tears = |name: &&String| name.starts_with("ClothTear") || *name == "TearSearch";
+        for name in named.filter(|name| is_substep && is_of_tears(name)) {
             tearing.insert(format!("{}: {name}", module.file));
         }
     }

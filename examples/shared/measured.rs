@@ -19,7 +19,7 @@ pub struct Figures {
     substeps: u32,
     /// The solver's call alone, contact included: in the median, of the ticks in which a cloth was awake.
     pub solver_ms: f64,
-    /// All of a tick, once the cloths are built: in the median, the 99th percentile, and at most.
+    /// Of a tick, from `FixedFirst` to `FixedPostUpdate`, once the cloths are built: in the median, the 99th percentile, and at most.
     tick_ms: f64,
     tick_ms_p99: f64,
     tick_ms_longest: f64,

@@ -44,7 +44,7 @@ impl<Own: Serialize> Report<Own> {
         code
     }
 
-    /// Fails, too, if a run of at least so many seconds did not end as it should: which is a condition, and what to say.
+    /// Fails if a run of at least so many seconds did not end as expected. Each expectation is a condition and its text.
     pub fn check(&self, printed: ExitCode, seconds: f32, expected: &[(bool, &str)]) -> ExitCode {
         if self.figures.simulated_seconds < f64::from(seconds) {
             return printed;

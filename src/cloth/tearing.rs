@@ -42,7 +42,7 @@ pub struct ClothTearing {
     /// The load that threads along the warp can bear: along the columns of a grid, and along any edge of a mesh without a
     /// [grain](crate::cloth::ClothGrain) (N/m).
     pub strength: f32,
-    /// The same along the weft: along the rows of a grid (N/m).
+    /// The same along the weft: along the rows of a grid, or across the [grain](crate::cloth::ClothGrain) of a mesh (N/m).
     pub weft_strength: f32,
 }
 

@@ -3,11 +3,13 @@
 //! A stitch is a constraint of extended position-based dynamics (Macklin, Müller and Chentanez 2016): its point x and the
 //! point Σ wᵢ xᵢ of the other side are no farther apart than a gap that closes, and at last in the same place. The springs of both
 //! cloths are solved first, each cloth for itself. So a seam stretches the springs beside it by what the other cloth falls in a
-//! sub-step, times its rows: as the square of the sub-step. By default, a cloth takes as many sub-steps as keep that within a tenth. To apply the last sub-step's force before the springs makes that
+//! sub-step, times its rows: as the square of the sub-step. By default, a cloth takes up to four times as many sub-steps, to
+//! keep that within a tenth. To apply the last sub-step's force before the springs makes that
 //! worse: the forces swing.
 
 use bevy::math::{Isometry3d, Vec3};
 
+use super::substepping::MAX_SUBSTEPS;
 use crate::cloth::{ClothParticles, Slot, Stitch};
 
 /// Largest speed at which a seam closes (m/s).
@@ -18,6 +20,9 @@ const ROUNDS: usize = 2;
 
 /// The largest slope of the curve by which it closes, over that of a line.
 const STEEPEST: f32 = 1.5;
+
+/// The least part of a load that counts in the next tick.
+const KEPT: f32 = 0.9;
 
 /// The largest stretch that the load of a seam may leave in the springs beside it.
 const GIVEN: f32 = 0.1;
@@ -33,8 +38,11 @@ pub(crate) struct Seam {
     since: f32,
     /// The longest gap as it began (m).
     longest: f32,
-    /// The largest acceleration by which its load moved a particle as the last tick ended (m/s²).
+    /// The largest acceleration by which springs moved a particle off the seam as the last tick ended (m/s²).
     load: f32,
+    /// The same in the last sub-step.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    load_now: f32,
     #[cfg_attr(feature = "serialize", serde(skip))]
     states: Vec<State>,
     /// As the tick began.
@@ -63,6 +71,8 @@ struct Thread {
 #[derive(Debug, Default, Clone, Copy)]
 struct State {
     place: Vec3,
+    /// As the sub-step began (m).
+    before: Vec3,
     push: Vec3,
     inverse_mass: f32,
 }
@@ -125,14 +135,19 @@ impl Thread {
             .sum()
     }
 
-    /// The largest inverse mass of its particles, each times its weight (1/kg).
-    fn lightest(&self, states: &[State]) -> f32 {
+    /// How far springs have moved its lightest particle off the others in the sub-step (m). Where contact pushed them apart before does
+    /// not count: more sub-steps would not change that.
+    fn moved(&self, states: &[State]) -> f32 {
         let each = self.nodes.iter().zip(self.weights);
-        let of = each.map(|(&node, weight)| {
-            let state = states.get(node as usize);
-            weight.abs() * state.map_or(0.0, |state| state.inverse_mass)
-        });
-        of.fold(0.0, f32::max)
+        let each = each.map(|(&node, weight)| (&states[node as usize], weight));
+        let before: Vec3 = (each.clone())
+            .map(|(state, weight)| weight * state.before)
+            .sum();
+        let lightest = each.map(|(state, weight)| weight.abs() * state.inverse_mass);
+        let part = lightest.fold(0.0, f32::max) / self.inverse_mass(states);
+        let moved = (self.apart(states).length() - before.length()) * part;
+        // Not so for NaN, as of a cloth that is lost.
+        if moved > 0.0 { moved } else { 0.0 }
     }
 
     /// Moves its particles by an impulse times a sub-step (kg m).
@@ -212,7 +227,7 @@ impl Seam {
 
     /// Goes on from where another seam of the same cloths was.
     pub fn resume(&mut self, other: &Self) {
-        self.since = other.since;
+        (self.since, self.load) = (other.since, other.load);
     }
 
     /// Whether its particles are among as many of each cloth.
@@ -264,17 +279,17 @@ impl Seam {
     /// Ends a tick of this many seconds.
     pub fn end(&mut self, seconds: f32, pull: &SeamPull) {
         self.since = (self.since + seconds).min(self.duration(pull));
-        let states = &self.states;
-        let closed = self.threads.iter().filter(|thread| thread.is_closed);
-        let loads = closed.map(|thread| thread.pull.length() * thread.lightest(states));
-        // Not NaN, as of a cloth that is lost.
-        self.load = loads.fold(0.0, f32::max);
+        // Asleep, nothing pulls. A load that swings does not change the sub-steps in each tick.
+        if seconds > 0.0 {
+            self.load = self.load_now.max(KEPT * self.load);
+        }
     }
 
     /// Sub-steps of a tick of this many seconds in which its load stretches springs of this length (m) beside it by no more than it may:
     /// a sub-step moves a particle away from the next one by its acceleration, times the square of the sub-step.
     pub fn needed(&self, spacing: f32, seconds: f32) -> u32 {
-        (seconds * (self.load / (GIVEN * spacing)).sqrt()).ceil() as u32
+        let wanted = seconds * (self.load / (GIVEN * spacing)).sqrt();
+        (wanted.ceil() as u32).min(MAX_SUBSTEPS)
     }
 
     /// Closes its gaps at the end of a sub-step of `dt` (s), `seconds` after the tick began. Returns the largest push (m).
@@ -311,6 +326,9 @@ impl Seam {
             thread.is_closed = allowed <= 0.0;
         }
         let softness = pull.compliance / (dt * dt);
+        let closed = threads.iter().filter(|thread| thread.is_closed);
+        let moved = closed.map(|thread| thread.moved(states));
+        self.load_now = moved.fold(0.0, f32::max) / (dt * dt);
         threads
             .iter_mut()
             .for_each(|thread| thread.pull = Vec3::ZERO);
@@ -343,8 +361,11 @@ impl Seam {
                 let Slot { block, lane } = cloth.slot(particle);
                 let block = &cloth.particles.blocks()[block];
                 let place = block.position(lane);
+                let before = place - block.displacement(lane);
+                let common = |place| cloth.to_common.map_or(place, |frame| frame * place);
                 State {
-                    place: cloth.to_common.map_or(place, |frame| frame * place),
+                    place: common(place),
+                    before: common(before),
                     push: Vec3::ZERO,
                     inverse_mass: match cloth.is_fixed {
                         true => 0.0,

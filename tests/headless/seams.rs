@@ -259,18 +259,22 @@ fn meshes_hang_from_meshes_and_heavy_from_light() {
         let seam = ClothSeam::new((upper, Pin::at_rest(is_hem)), (lower, Pin::at_rest(is_top)));
         let seam = sew(&mut app, seam);
         let (mut gap, mut stretch) = (0.0_f32, [0.0_f32; 2]);
-        for _ in 0..320 {
+        let mut substeps = [0; 2];
+        for step in 0..320 {
             tick(&mut app, 1);
             let hem = line(&app, upper, is_hem, Vec3::X);
             gap = gap.max(apart(&hem, &line(&app, lower, is_top, Vec3::X)));
             for (most, cloth) in stretch.iter_mut().zip([upper, lower]) {
                 *most = most.max(stats(&app, cloth).stretch.structural);
             }
+            substeps[usize::from(step > 0)] = stats(&app, upper).substeps;
         }
+        // A load takes more of them.
+        assert!(substeps[0] < substeps[1] || heavier == 1.0, "{substeps:?}");
         let lowest = places(&app, lower).into_iter().map(|place| place.y);
         let length = -lowest.fold(f32::MAX, f32::min);
         println!(
-            "{spacings:?} m, {heavier} times as heavy: gap {gap:.1e} m, stretch {stretch:.4?}, hangs {length:.4} m"
+            "{spacings:?} m, {heavier} times as heavy: gap {gap:.1e} m, stretch {stretch:.4?}, hangs {length:.4} m, {substeps:?} sub-steps"
         );
         assert!(app.world().get::<ClothFault>(seam).is_none());
         // A mesh's vertices are matched by length, which rounds at each of them.

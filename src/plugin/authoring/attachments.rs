@@ -63,7 +63,7 @@ pub enum ClothTarget {
     Entity(Entity),
     /// The entity with this `Name`, for instance from a scene or a modelling program. If several have it, it is the one
     /// that has the nearest common ancestor with the cloth or the seam. So each copy of a character finds its own. Among
-    /// equals it is the one spawned first. Once found, it stays the same one while it has the name, whatever comes later.
+    /// equals it is the one with the lowest generation and index. Once found, it stays the same one while it has the name, whatever comes later.
     /// While there is none, the cloth stands still, with a fault; a seam has the fault itself.
     Named(String),
 }

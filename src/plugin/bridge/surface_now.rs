@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// The surface of a cloth's particles: the built one. After a restored snapshot with other tears it is another, until the next tick builds that.
-/// `None` before the first tick.
+/// `None` before the first tick, and where the particles are not of the cloth.
 pub(super) fn surface_now<'a>(
     built: &'a ClothBuilt,
     state: &ClothState,
@@ -20,7 +20,8 @@ pub(super) fn surface_now<'a>(
     }
     let edges = tears.map_or(&[][..], ClothTears::edges);
     let opened = edges.get(..state.inputs.opened).unwrap_or(edges);
-    let surface = match !state.resumes || opened == built.tears().edges() {
+    let is_built = opened == built.tears().edges() && state.inputs.as_mesh == built.is_as_mesh();
+    let surface = match !state.resumes || is_built {
         true => Cow::Borrowed(built.surface()),
         false => Cow::Owned(match opened {
             [] if !state.inputs.as_mesh => built.surface().whole(),

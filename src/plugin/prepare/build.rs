@@ -61,7 +61,7 @@ pub(crate) fn build(
         follow_changes(wanted, parts, particles, built, state).map(|()| Build::Kept)
     } else if has_grain && !resumes {
         follow_tears(wanted, parts, particles, built, state)
-    } else if is_built && !has_grain {
+    } else if is_built && !has_grain && !resumes {
         follow_grain(wanted, sources, parts, particles, built, state)
     } else {
         build_new(wanted, sources, parts, particles, built, state)

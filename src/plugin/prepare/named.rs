@@ -24,7 +24,7 @@ pub(crate) struct NamedTargets<'w, 's, F: QueryFilter + Send + Sync + 'static> {
 
 impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
     /// The entity that `target` names, as seen from the entity `from`. A `known` one stays while it has the name. Of others
-    /// for which `exists` holds, it is the one with the nearest common ancestor. Among equals it is the one spawned first.
+    /// for which `exists` holds, it is the one with the nearest common ancestor. Among equals it is the one with the lowest generation and index.
     ///
     /// # Errors
     /// [`ClothError::NoTargetNamed`], with the text of a pin.

@@ -58,7 +58,7 @@ pub enum Substepping {
     /// - More where it is taut as a membrane, until ripples across its chains are resolved,
     ///   [`Stretch::ripple_substeps`].
     /// - More where a body lies on it, or where a mesh is denser than elsewhere, until it holds that, [`Stretch::load_substeps`].
-    /// - More where a seam bears much, until the springs beside it are stretched by no more than a tenth.
+    /// - Up to four times as many where a seam bears much, until the springs beside it are stretched by no more than a tenth.
     /// - At least 20 in 1/64 s for a mesh that may tear, [`ClothTearing`](crate::cloth::ClothTearing).
     /// - More where something that moves forces it over a collider's edges, so that it is stretched by far more than its
     ///   material gives, or an edge goes deep into it in one sub-step, [`Stretch::contact_substeps`]. That tick is repeated, before the

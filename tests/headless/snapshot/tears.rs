@@ -122,3 +122,33 @@ fn a_tear_that_runs_is_rolled_back() {
         assert!(go_on(&mut other, clone) == expected);
     }
 }
+
+/// A mesh has its grain for the sake of a tearing. A snapshot from before that goes on to the last bit once the tearing is gone.
+#[test]
+fn a_tear_and_its_grain_are_rolled_back() {
+    let mut app = app();
+    let grain = ClothGrain::along(Vec3::new(0.3, 1.0, 0.0));
+    let parts = (mesh(1.2, 1.2, 0.1), top(), ClothMaterial::COTTON, grain);
+    let cloth = app.world_mut().spawn(parts).id();
+    tick(&mut app, 20);
+    let saved = ClothSnapshot::of(app.world(), cloth).expect("a cloth");
+    let go_on = |app: &mut App| -> Vec<ClothParticles> {
+        let next = |_| {
+            tick(app, 1);
+            assert_eq!(app.world().get::<ClothFault>(cloth), None);
+            particles(app, cloth).clone()
+        };
+        (0..24).map(next).collect()
+    };
+    let expected = go_on(&mut app);
+    let tearing = ClothTearing {
+        strength: 0.5,
+        weft_strength: 0.4,
+    };
+    app.world_mut().entity_mut(cloth).insert(tearing);
+    tick(&mut app, 40);
+    assert!(!tears(&app, cloth).is_empty());
+    saved.restore(app.world_mut(), cloth).expect("the cloth");
+    app.world_mut().entity_mut(cloth).remove::<ClothTearing>();
+    assert!(go_on(&mut app) == expected);
+}
