@@ -379,7 +379,7 @@ fn a_piece_that_is_awake_is_in_a_snapshot() {
         if stage == 9 {
             banner.fall_asleep();
             change::<Transform>(&mut banner.app, banner.floor, |at| {
-                at.translation.y -= 1.0e-3
+                at.translation.y -= 1.0e-3;
             });
             banner.tick(1);
         }

@@ -81,7 +81,7 @@ pub struct ClothSeam {
 #[reflect(Default, Debug, Clone, PartialEq)]
 pub struct ClothSeamSide {
     /// The cloth. If several cloths have the name, it is the one that has the nearest common ancestor with the seam's own
-    /// entity, and among equals the one with the lowest generation and index. A seam that has begun keeps its cloth while that has the name.
+    /// entity. Among equals it is the one with the lowest generation and index. A seam that has begun keeps its cloth while that has the name.
     #[entities]
     pub cloth: ClothTarget,
     /// The particles.

@@ -255,7 +255,7 @@ impl SearchQueryItem<'_, '_> {
         let (bounds, query) = sleep_query;
         let (tree, surface) = (self.built.tree(), self.built.surface());
         let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
-        let cover = cover(contact_settings, stretch, &self.built);
+        let cover = cover(contact_settings, stretch, self.built);
         let mut has_bounds = false;
         for (entity, motion) in colliders.near(centre, radius, layers) {
             if self
@@ -308,7 +308,7 @@ impl SearchQueryItem<'_, '_> {
         let cover = cover(
             &scratch.contact_settings,
             self.state.stretch.bound,
-            &self.built,
+            self.built,
         );
         query.clear();
         let mut is_dragged = false;
