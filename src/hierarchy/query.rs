@@ -38,6 +38,13 @@ impl TopDownQuery {
         self.found.leaf_tests = 0;
     }
 
+    /// A search whose [`visits`](Self::visits) nobody reads, so that it does not keep them.
+    pub(crate) fn silent() -> Self {
+        let mut query = Self::default();
+        query.found.is_silent = true;
+        query
+    }
+
     /// Searches for `probe`, and appends to the results since [`clear`](Self::clear). Returns the range of the probe's
     /// [`candidates`](Self::candidates). The tree and the bounds must belong to the particles, or nothing is found.
     pub fn search(

@@ -36,12 +36,22 @@ impl RayHit {
 }
 
 /// Memory of a search for a ray, which is reused.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct RayQuery {
     bounds: NodeBounds,
     query: TopDownQuery,
     /// The corners of a particle's faces, [seen](View) by the ray.
     corners: Vec<DVec3>,
+}
+
+impl Default for RayQuery {
+    fn default() -> Self {
+        Self {
+            bounds: NodeBounds::default(),
+            query: TopDownQuery::silent(),
+            corners: Vec::new(),
+        }
+    }
 }
 
 impl RayQuery {

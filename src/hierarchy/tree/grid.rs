@@ -180,6 +180,7 @@ fn descend(
 ) {
     let SearchBuffers {
         visits,
+        is_silent,
         frontier: [here, next],
         candidates,
         leaf_tests,
@@ -196,7 +197,9 @@ fn descend(
                     (first_column..end_column).zip(&parts.columns[first_column as usize..])
                 {
                     let touching = touches(level, [row, column], rows, columns);
-                    visits.push((parts.index(row, column), touching));
+                    if !*is_silent {
+                        visits.push((parts.index(row, column), touching));
+                    }
                     if touching && level < leaves {
                         let (below, beside) = (&rows.children, &columns.children);
                         next.push([below.start, below.end, beside.start, beside.end]);

@@ -216,7 +216,9 @@ impl Tree for NetworkTree {
                     let node = &self.nodes[index as usize];
                     let middle = position(particles, node.slot);
                     let touching = self.volume_of(bounds, index, middle).may_reach(probe, reach);
-                    found.visits.push((index, touching));
+                    if !found.is_silent {
+                        found.visits.push((index, touching));
+                    }
                     if node.children.is_empty() {
                         found.leaf_tests += 1;
                         if touching && probe.meets(middle) {
