@@ -99,7 +99,7 @@ fn worldly(house: &House) -> Found {
     worldly
 }
 
-/// What sub-steps would have to name to search for tears: a cloth tears as a tick ends, so one that may not tear pays nothing.
+/// Names of the search for tears in the code of sub-steps. A cloth tears as a tick ends, so one that may not tear pays nothing.
 fn tearing(house: &House) -> Found {
     let mut tearing = Found::new();
     for (at, module) in &house.0 {

@@ -110,7 +110,7 @@ fn motion(app: &App, cloths: &[Entity]) -> (Vec3, f32) {
 /// other.
 const IN_A_SUBSTEP: f32 = GRAVITY * (TICK / 4.0) * (TICK / 4.0);
 
-/// What gravity moves in a sub-step of the last tick (m), in which the cloth was awake.
+/// The fall by gravity in a sub-step of the last tick (m). The cloth was awake in it.
 fn fall_in_a_substep(app: &App, cloth: Entity) -> f32 {
     let substeps = stats(app, cloth).substeps;
     assert!(substeps > 0);

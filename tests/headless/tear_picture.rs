@@ -17,7 +17,7 @@ use crate::{
     tears::{cut_at, surface, top},
 };
 
-/// What is drawn of a cloth.
+/// The mesh that is drawn of a cloth.
 struct Picture {
     places: Vec<Vec3>,
     normals: Vec<Vec3>,

@@ -12,6 +12,19 @@ fn sheets() -> [Cloth; 2] {
     [Cloth::new(13, 13, 0.1), mesh(1.2, 1.2, 0.1)]
 }
 
+/// A sheet that hangs, with a cut at a height that has opened, if any.
+fn hung(cloth: Cloth, opened: Option<f32>) -> (App, Entity) {
+    let mut app = app();
+    let parts = (cloth, top(), ClothTears::default());
+    let cloth = app.world_mut().spawn(parts).id();
+    tick(&mut app, 20);
+    if let Some(height) = opened {
+        assert!(cut_at(&mut app, height) > 5);
+        tick(&mut app, 4);
+    }
+    (app, cloth)
+}
+
 /// The ticks from here on: particles and tears after each.
 fn go_on(app: &mut App, cloth: Entity) -> Vec<(ClothParticles, ClothTears)> {
     let next = |_| {
@@ -31,14 +44,7 @@ fn tears_that_are_being_built_are_forgotten() {
         .into_iter()
         .flat_map(|cloth| cases.map(|case| (cloth.clone(), case)))
     {
-        let mut app = app();
-        let parts = (cloth, top(), ClothTears::default());
-        let cloth = app.world_mut().spawn(parts).id();
-        tick(&mut app, 20);
-        if let Some(height) = opened {
-            assert!(cut_at(&mut app, height) > 5);
-            tick(&mut app, 4);
-        }
+        let (mut app, cloth) = hung(cloth, opened);
         if let Some(height) = listed {
             assert!(cut_at(&mut app, height) > 5);
         }
@@ -61,14 +67,7 @@ fn a_cut_right_after_a_snapshot_is_as_before() {
         .into_iter()
         .flat_map(|cloth| [None, Some(-0.33)].map(|opened| (cloth.clone(), opened)))
     {
-        let mut app = app();
-        let parts = (cloth, top(), ClothTears::default());
-        let cloth = app.world_mut().spawn(parts).id();
-        tick(&mut app, 20);
-        if let Some(height) = opened {
-            assert!(cut_at(&mut app, height) > 5);
-            tick(&mut app, 4);
-        }
+        let (mut app, cloth) = hung(cloth, opened);
         let saved = ClothSnapshot::of(app.world(), cloth).expect("a cloth");
         let cut = |app: &mut App| {
             let hit = app
