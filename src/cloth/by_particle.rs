@@ -1,5 +1,7 @@
 //! Items, grouped by particle.
 
+use std::ops::Range;
+
 /// Items of each particle: in one list, with the place where those of each particle begin.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct ByParticle<T> {
@@ -42,16 +44,22 @@ impl<T: Copy> ByParticle<T> {
         self.first.len().saturating_sub(1)
     }
 
+    /// The places of a particle's items in the list.
+    #[inline]
+    pub fn range_of(&self, particle: u32) -> Range<usize> {
+        let particle = particle as usize;
+        self.first[particle] as usize..self.first[particle + 1] as usize
+    }
+
     /// The items of a particle.
     #[inline]
     pub fn of(&self, particle: u32) -> &[T] {
-        let particle = particle as usize;
-        &self.items[self.first[particle] as usize..self.first[particle + 1] as usize]
+        &self.items[self.range_of(particle)]
     }
 
     /// The items of a particle, to change.
     pub fn of_mut(&mut self, particle: u32) -> &mut [T] {
-        let particle = particle as usize;
-        &mut self.items[self.first[particle] as usize..self.first[particle + 1] as usize]
+        let range = self.range_of(particle);
+        &mut self.items[range]
     }
 }

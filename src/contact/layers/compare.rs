@@ -23,7 +23,7 @@ use crate::cloth::MapInline;
 const EDGES: f32 = 0.5;
 
 /// Largest distance that a pair of one cloth is kept apart, as a fraction of its distance at rest.
-const OF_REST: f32 = 0.5;
+pub(super) const OF_REST: f32 = 0.5;
 
 /// Number of sub-steps of motion that a list of features lasts; at least this fraction of the thickness, at most this
 /// fraction of the shortest spacing.

@@ -1,66 +1,119 @@
-//! Which neighbouring patches of grids may touch each other: those in sharp folds.
+//! Which neighbouring patches may touch each other: those in sharp folds.
 //!
-//! ```text
-//!   ┌───┬───┬───┬───┐
-//!   │ a │ b │   │   │     a window: 2 × 2 patches
-//!   ├───┼───┼───┼───┤
-//!   │ c │ d │   │   │     its tangents differ little: no two of a, b, c and d touch, and none touches itself
-//!   └───┴───┴───┴───┘
-//! ```
-//!
-//! Two patches are neighbours if a window has both. They are a pair only if all windows that have both are folded. A window
-//! is measured again once any two particles of the cloths may have come nearer by its slack.
+//! A [window](super::windows) is unfolded while its faces [differ little](super::flattened) from a plane: no two of its patches touch,
+//! and none touches itself. Two neighbours are a pair only if all windows that have both are folded. A window is measured again once
+//! any two points of its patches may have come nearer by its slack.
 
-use super::{motion::Motion, near_patches::Meets, participant::Participant};
-use crate::cloth::MapInline;
+use bevy::math::{Vec3A, Vec4, Vec4Swizzles};
 
-/// Smallest slack of an unfolded window, as a fraction of the thickness or of a flat one's slack. With less, the motion of
-/// all would soon use it up; a pair of patches has a slack of its own.
-const LEAST: f32 = 0.5;
+use super::{
+    compare::OF_REST, flattened::Scratch, motion::Motion, near_patches::Meets,
+    participant::Participant, patch_pair::PatchPair,
+};
 
-/// In place of the approach that a window stays unfolded for: it is folded, or is not yet measured.
-const FOLDED: f32 = f32::NEG_INFINITY;
-const UNKNOWN: f32 = f32::MIN;
+/// Smallest slack of an unfolded window, as a fraction of the thickness or of a flat one's slack. With less, small motion would soon
+/// use it up; a pair of patches has a slack of its own.
+const LEAST: f32 = 0.2;
+
+/// Least and most that a folded window's points move before it is measured again, as fractions of the thickness.
+const AGAIN: [f32; 2] = [0.5, 2.0];
 
 /// The windows of all cloths.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Folds {
-    /// The first window of each cloth; and one more.
-    firsts: Vec<usize>,
-    /// [How near](Motion::approached) particles may have come to each other before a window may be folded (m), or [`FOLDED`]; ∞ for
-    /// one that does not matter.
-    until: Vec<f32>,
-    /// Of each patch, with which neighbours it is a pair: a bit for [each](super::windows::Windows::neighbour).
-    pairs: Vec<u8>,
-    /// The windows of a cloth that have just folded.
+    /// The first window, patch of a window, and pair of neighbours of each cloth; and one more.
+    firsts: Vec<[usize; 3]>,
+    windows: Vec<Window>,
+    /// Of each patch of each window, its middle from that of the window, and what it had used, when the window was measured (m).
+    references: Vec<Vec4>,
+    /// Whether two neighbours are a pair.
+    are_pairs: Vec<bool>,
+    has_new: bool,
     #[cfg_attr(feature = "serialize", serde(skip))]
-    folded: Vec<usize>,
+    scratch: Scratch,
+}
+
+/// Whether a window is folded.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+struct Window {
+    is_folded: bool,
+    /// Whether it was measured in this sub-step: its references are those at the end of it.
+    is_new: bool,
+    /// How far its points may come nearer to each other before it is measured again (m).
+    slack: f32,
 }
 
 impl Folds {
     /// Begins with windows that are not measured.
-    pub fn reset(&mut self, among: &Meets<impl Fn(usize, usize) -> bool>, patches: usize) {
+    pub fn reset(&mut self, among: &Meets<impl Fn(usize, usize) -> bool>) {
         self.firsts.clear();
-        self.until.clear();
+        self.windows.clear();
+        let mut next = [0; 3];
         for (index, cloth) in among.cloths.iter().enumerate() {
-            self.firsts.push(self.until.len());
-            let until = if among.of(index, index) {
-                UNKNOWN
-            } else {
+            self.firsts.push(next);
+            let windows = cloth.sheet.windows();
+            // One of a cloth that does not touch itself does not matter.
+            let is_of_none = !among.of(index, index);
+            let slack = if is_of_none {
                 f32::INFINITY
+            } else {
+                f32::NEG_INFINITY
             };
-            let windows = self.until.len() + cloth.sheet.windows().count();
-            self.until.resize(windows, until);
+            next[0] += windows.count();
+            next[1] += windows.place_count();
+            next[2] += windows.pair_count();
+            self.windows.resize(
+                next[0],
+                Window {
+                    is_folded: false,
+                    is_new: false,
+                    slack,
+                },
+            );
         }
-        self.firsts.push(self.until.len());
-        self.pairs.clear();
-        self.pairs.resize(patches, 0);
+        self.firsts.push(next);
+        self.references.clear();
+        self.references.resize(next[1], Vec4::ZERO);
+        self.are_pairs.clear();
+        self.are_pairs.resize(next[2], false);
     }
 
-    /// Measures approaches from zero again.
-    pub fn begin_tick(&mut self, approached: f32) {
-        self.until.iter_mut().for_each(|until| *until -= approached);
+    /// Measures what is used from zero again.
+    pub fn begin_tick(&mut self, cloths: &[Participant], motion: &Motion) {
+        for (index, cloth) in cloths.iter().enumerate() {
+            let [_, first_reference, _] = self.firsts[index];
+            let patches = &motion.patches[motion.firsts[index][1] as usize..];
+            let windows = cloth.sheet.windows();
+            let all = (0..windows.count()).flat_map(|window| windows.patches_in(window).1);
+            for (reference, &patch) in self.references[first_reference..].iter_mut().zip(all) {
+                reference.w -= patches[patch as usize].earlier;
+            }
+        }
+    }
+
+    /// Ends the sub-step: what was measured in it is used up from here on.
+    pub fn pass(&mut self, cloths: &[Participant], motion: &Motion) {
+        if !std::mem::take(&mut self.has_new) {
+            return;
+        }
+        for (index, cloth) in cloths.iter().enumerate() {
+            let [first, first_reference, _] = self.firsts[index];
+            let starts = &motion.patches[motion.firsts[index][1] as usize..];
+            for window in 0..self.firsts[index + 1][0] - first {
+                if !std::mem::take(&mut self.windows[first + window].is_new) {
+                    continue;
+                }
+                let (from, patches) = cloth.sheet.windows().patches_in(window);
+                let references = &mut self.references[first_reference + from..];
+                let each = || patches.iter().map(|&patch| &starts[patch as usize]);
+                let middle = each().map(|patch| patch.start).sum::<Vec3A>() / patches.len() as f32;
+                for (reference, patch) in references.iter_mut().zip(each()) {
+                    *reference = (patch.start - middle).extend(patch.used_before());
+                }
+            }
+        }
     }
 
     /// Measures the windows that may be folded at the end of the sub-step, but for a `reserve` (m). Calls `found` with
@@ -70,81 +123,97 @@ impl Folds {
         cloths: &[Participant],
         motion: &Motion,
         reserve: f32,
-        mut found: impl FnMut([u32; 2]),
+        mut found: impl FnMut([u32; 2], usize),
     ) -> f32 {
-        let approached = motion.approached + motion.approach;
         let mut left = f32::INFINITY;
         for (index, cloth) in cloths.iter().enumerate() {
+            let [first, first_reference, first_pair] = self.firsts[index];
             let [first_particle, first_patch, ..] = motion.firsts[index];
             let places = &motion.end[first_particle as usize..];
-            let first = self.firsts[index];
+            let ends = &motion.ends[first_patch as usize..];
             let thickness = cloth.settings.thickness;
-            let least = LEAST * thickness.min(cloth.sheet.closest() - thickness);
-            self.folded.clear();
-            for window in first..self.firsts[index + 1] {
-                let until = &mut self.until[window];
-                if *until - approached <= reserve {
-                    let unfolded = cloth.sheet.unfolded(window - first, places);
-                    let slack = unfolded - thickness;
-                    // False for NaN.
-                    if slack > least {
-                        *until = approached + slack;
-                    } else if *until != FOLDED {
-                        *until = FOLDED;
-                        self.folded.push(window - first);
+            for window in 0..self.firsts[index + 1][0] - first {
+                let state = &mut self.windows[first + window];
+                if state.slack == f32::INFINITY {
+                    continue;
+                }
+                let (from, patches) = cloth.sheet.windows().patches_in(window);
+                let references = &self.references[first_reference + from..];
+                let each = || patches.iter().map(|&patch| ends[patch as usize]);
+                let middle = each().sum::<Vec4>().xyz() / patches.len() as f32;
+                let used = each().zip(references).map(|(end, reference)| {
+                    let apart = *reference - end + middle.extend(0.0);
+                    Vec3A::from_vec4(apart).length() - apart.w
+                });
+                let used = 2.0 * used.fold(f32::NEG_INFINITY, f32::max);
+                // False for NaN.
+                if state.slack - used > reserve && !state.is_new {
+                    if !state.is_folded {
+                        left = left.min(state.slack - used);
+                    }
+                    continue;
+                }
+                state.is_new = true;
+                self.has_new = true;
+                let measured = cloth.sheet.windows().flattened(window).map(|flattened| {
+                    let unfolded = flattened.unfolded(places, &mut self.scratch);
+                    let closest = flattened.closest();
+                    let least = LEAST * thickness.min((closest - thickness).max(OF_REST * closest));
+                    (flattened.slack(unfolded, thickness, OF_REST), least)
+                });
+                let was_folded = std::mem::replace(&mut state.is_folded, true);
+                match measured {
+                    None => state.slack = f32::INFINITY,
+                    Some((slack, least)) if slack > least => {
+                        (state.is_folded, state.slack) = (false, slack);
+                        left = left.min(slack);
+                        continue;
+                    }
+                    // It has to come apart by as much.
+                    Some((slack, least)) => {
+                        state.slack =
+                            (least - slack).clamp(AGAIN[0] * thickness, AGAIN[1] * thickness)
                     }
                 }
-                if *until != FOLDED {
-                    left = left.min(*until - approached);
+                if was_folded {
+                    continue;
                 }
-            }
-            let folded = std::mem::take(&mut self.folded);
-            for &window in &folded {
-                for (at, a) in cloth.sheet.windows().patches_in(window).enumerate() {
-                    for b in cloth.sheet.windows().patches_in(window).skip(at) {
-                        self.pair(cloth, first, [a, b], first_patch, &mut found);
+                for (at, &a) in patches.iter().enumerate() {
+                    for &b in &patches[at..] {
+                        let Some(pair) = cloth.sheet.windows().pair_of([a, b]) else {
+                            continue;
+                        };
+                        let mut windows = cloth.sheet.windows().with(pair).iter();
+                        let is_pair = &mut self.are_pairs[first_pair + pair];
+                        if !*is_pair
+                            && windows.all(|&of| self.windows[first + of as usize].is_folded)
+                        {
+                            *is_pair = true;
+                            found([first_patch + a, first_patch + b], first_pair + pair);
+                        }
                     }
                 }
             }
-            self.folded = folded;
         }
         left
     }
 
-    /// Makes a pair of two neighbours of a cloth, unless they are one or cannot touch.
-    fn pair(
-        &mut self,
-        cloth: &Participant,
-        first_window: usize,
-        of: [u32; 2],
-        first_patch: u32,
-        found: &mut impl FnMut([u32; 2]),
-    ) {
-        let mut windows = cloth.sheet.windows().with(of);
-        let bit = 1 << cloth.sheet.windows().neighbour(of);
-        let (until, pairs) = (&self.until, &mut self.pairs[(first_patch + of[0]) as usize]);
-        let is_folded = |window: usize| until[first_window + window] == FOLDED;
-        if *pairs & bit == 0 && windows.all(is_folded) {
-            *pairs |= bit;
-            found(of.map_inline(|patch| first_patch + patch));
-        }
-    }
-
-    /// Whether two neighbours cannot touch.
+    /// Whether two patches are neighbours that cannot touch.
     #[inline]
-    pub fn keep_apart(&self, cloths: &[Participant], motion: &Motion, of: [u32; 2]) -> bool {
-        let Some((cloth, of)) = motion.of_one_cloth(of) else {
-            return false;
-        };
-        let first = self.firsts[cloth];
-        let mut windows = cloths[cloth].sheet.windows().with(of);
-        windows.any(|window| self.until[first + window] != FOLDED)
+    pub fn keep_apart(&self, cloths: &[Participant], motion: &Motion, pair: &PatchPair) -> bool {
+        pair.neighbours.is_some_and(|neighbours| {
+            let cloth = motion.patches[pair.of[0] as usize].cloth as usize;
+            let [first, _, first_pair] = self.firsts[cloth];
+            let of = neighbours as usize - first_pair;
+            let mut windows = cloths[cloth].sheet.windows().with(of).iter();
+            windows.any(|&window| !self.windows[first + window as usize].is_folded)
+        })
     }
 
     /// Forgets a pair of neighbours.
-    pub fn forget(&mut self, cloths: &[Participant], motion: &Motion, pair: [u32; 2]) {
-        if let Some((cloth, of)) = motion.of_one_cloth(pair) {
-            self.pairs[pair[0] as usize] &= !(1 << cloths[cloth].sheet.windows().neighbour(of));
+    pub fn forget(&mut self, pair: &PatchPair) {
+        if let Some(neighbours) = pair.neighbours {
+            self.are_pairs[neighbours as usize] = false;
         }
     }
 }

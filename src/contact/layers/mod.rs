@@ -35,6 +35,7 @@ mod certificate;
 mod circumstances;
 mod compare;
 mod contacts;
+mod flattened;
 mod folds;
 mod inside;
 mod intersections;
@@ -53,7 +54,6 @@ mod patch_pair;
 mod response;
 mod settings;
 mod sheet;
-mod tangents;
 #[cfg(test)]
 mod tests;
 mod windows;
@@ -148,7 +148,7 @@ impl MutualContact {
         }
         let is_new = !(self.is_known && self.motion.is_of(cloths));
         if is_same && !is_new && !was_lost {
-            self.near.begin_tick(&mut self.motion);
+            self.near.begin_tick(cloths, &mut self.motion);
             self.tighten();
             let approach = self.last.begin_tick(cloths);
             if approach == 0.0 || approach <= self.last.free {
@@ -172,7 +172,7 @@ impl MutualContact {
                 cloths,
                 meets: &meets,
             };
-            self.near.restart(begins, &among, self.motion.patches.len());
+            self.near.restart(begins, &among);
             self.boxes.reset(cloths, self.motion.patches.len());
             self.mean_pushes.clear(cloths);
             self.contacts.pairs.clear();
@@ -185,6 +185,7 @@ impl MutualContact {
             None => self.lose(),
         }
         self.near.begins = false;
+        self.near.pass(cloths, &self.motion);
         self.tighten();
     }
 
@@ -276,6 +277,7 @@ impl MutualContact {
         let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
         self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
         self.motion.pass(cloths, REFERENCE * thinnest);
+        self.near.pass(cloths, &self.motion);
         self.last.reserve = 0.0;
         if !self.contacts.pairs.is_empty() {
             let are_resting = self.members.are_resting(RESTING_SPEED * dt);

@@ -13,7 +13,6 @@
 use bevy::math::{Vec3A, Vec4};
 
 use super::{bounds::Bounds, participant::Participant};
-use crate::cloth::MapInline;
 
 /// A patch at the beginning and at the end of a sub-step.
 #[derive(Debug, Default, Clone, Copy)]
@@ -85,14 +84,9 @@ pub(super) struct Motion {
     pub ends: Vec<Vec4>,
     /// Offsets of each patch's particles at its reference (m).
     offsets: Vec<Vec3A>,
-    /// Upper bounds of the approach of any two particles, in earlier sub-steps and in this one (m).
-    pub approached: f32,
-    pub approach: f32,
-    /// The patches whose particles were put elsewhere, and how far at most (m).
+    /// The patches whose particles were put elsewhere.
     #[cfg_attr(feature = "serialize", serde(skip))]
     changed: Vec<u32>,
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    put_by: f32,
     /// The motion that all had in common, in all and in the sub-step (m).
     pub drift: Vec3A,
     pub drifted: Vec3A,
@@ -122,7 +116,6 @@ impl Motion {
         }
         self.firsts.push(next);
         (self.drift, self.drifted) = (Vec3A::ZERO, Vec3A::ZERO);
-        (self.approached, self.approach) = (0.0, 0.0);
         self.read(cloths);
         self.start.clone_from(&self.end);
         self.offsets.clear();
@@ -148,20 +141,6 @@ impl Motion {
         (cloth, (particle - self.firsts[cloth][0]) as usize)
     }
 
-    /// The cloth of two patches, and their indices there, if both are of one.
-    #[inline]
-    pub fn of_one_cloth(&self, of: [u32; 2]) -> Option<(usize, [u32; 2])> {
-        let [a, b] = of.map_inline(|patch| self.patches[patch as usize].cloth as usize);
-        (a == b).then(|| (a, of.map_inline(|patch| patch - self.firsts[a][1])))
-    }
-
-    /// Whether two patches are [neighbours](super::folds) in a grid.
-    #[inline]
-    pub fn are_neighbours(&self, cloths: &[Participant], of: [u32; 2]) -> bool {
-        let of = self.of_one_cloth(of);
-        of.is_some_and(|(cloth, of)| cloths[cloth].sheet.windows().are_neighbours(of))
-    }
-
     /// Reads the particles' positions at the end of the sub-step.
     pub fn read(&mut self, cloths: &[Participant]) {
         self.end.clear();
@@ -175,7 +154,7 @@ impl Motion {
         }
     }
 
-    /// Measures the motion that all have in common, and how much nearer any two may have come.
+    /// Measures the motion that all have in common.
     pub fn measure_all(&mut self) {
         let each = self.end.iter().zip(&self.start);
         let sum = each.map(|(end, start)| *end - *start).sum::<Vec3A>();
@@ -184,19 +163,15 @@ impl Motion {
         let drifted = sum / self.end.len().max(1) as f32;
         self.drift += drifted - self.drifted;
         self.drifted = drifted;
-        let each = self.end.iter().zip(&self.start);
-        let squares = each.map(|(end, start)| (*end - *start - drifted).length_squared());
-        self.approach = 2.0 * squares.fold(0.0, f32::max).sqrt();
     }
 
     /// Puts a particle elsewhere at the end of the sub-step.
     #[inline]
     pub fn put(&mut self, cloths: &[Participant], particle: u32, place: Vec3A) {
-        let by = place - std::mem::replace(&mut self.end[particle as usize], place);
-        if by == Vec3A::ZERO {
+        let before = std::mem::replace(&mut self.end[particle as usize], place);
+        if before == place {
             return;
         }
-        self.put_by = self.put_by.max(by.length());
         let (cloth, local) = self.cloth_of(particle);
         for patch in cloths[cloth].sheet.patches_of(local) {
             let patch = self.firsts[cloth][1] + patch;
@@ -208,7 +183,6 @@ impl Motion {
 
     /// Measures the patches whose particles were put elsewhere.
     pub fn measure_changed(&mut self, cloths: &[Participant]) {
-        self.approach += 2.0 * std::mem::take(&mut self.put_by);
         let changed = std::mem::take(&mut self.changed);
         for &patch in &changed {
             self.patches[patch as usize].is_changed = false;
@@ -245,8 +219,6 @@ impl Motion {
     pub fn pass(&mut self, cloths: &[Participant], most: f32) {
         std::mem::swap(&mut self.start, &mut self.end);
         self.drifted = Vec3A::ZERO;
-        self.approached += self.approach;
-        self.approach = 0.0;
         for (index, patch) in self.patches.iter_mut().enumerate() {
             patch.start = patch.end;
             patch.deviation[0] = patch.deviation[1];

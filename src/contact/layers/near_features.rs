@@ -64,13 +64,8 @@ impl NearFeatures {
 
     /// Clears all, to look at the same patches anew. If they `begin`, any may be inside each other, otherwise those that
     /// still were.
-    pub fn restart(
-        &mut self,
-        begins: bool,
-        among: &Meets<impl Fn(usize, usize) -> bool>,
-        patches: usize,
-    ) {
-        self.folds.reset(among, patches);
+    pub fn restart(&mut self, begins: bool, among: &Meets<impl Fn(usize, usize) -> bool>) {
+        self.folds.reset(among);
         self.begins = begins;
         self.were_tangled.clear();
         if !begins {
@@ -133,17 +128,17 @@ impl NearFeatures {
             were_tangled,
             ..
         } = self;
-        let mut found = |of: [u32; 2]| {
+        let mut found = |of: [u32; 2], neighbours: Option<u32>| {
             let is_tangled = were_tangled.binary_search(&in_order(of)).is_ok();
-            pairs.push(PatchPair::new(of, is_tangled));
+            pairs.push(PatchPair::new(of, neighbours, is_tangled));
         };
-        let unfolded = folds.renew(among.cloths, motion, reserve, &mut found);
+        let unfolded = folds.renew(among.cloths, motion, reserve, |of, neighbours| {
+            found(of, Some(neighbours as u32));
+        });
         if has_left {
-            boxes.search(among, motion, work, &mut found);
+            boxes.search(among, motion, work, |of| found(of, None));
             // Neighbours stay while they are folded: only a fold makes them a pair.
-            self.retain(|_, pair| {
-                boxes.overlap(pair.of) || motion.are_neighbours(among.cloths, pair.of)
-            });
+            self.retain(|_, pair| pair.neighbours.is_some() || boxes.overlap(pair.of));
         }
         self.were_tangled.clear();
         unfolded
@@ -169,7 +164,8 @@ impl NearFeatures {
     }
 
     /// Measures what is used from zero again: sums of years would round.
-    pub fn begin_tick(&mut self, motion: &mut Motion) {
+    pub fn begin_tick(&mut self, cloths: &[Participant], motion: &mut Motion) {
+        self.folds.begin_tick(cloths, motion);
         for pair in &mut self.pairs {
             for patch in pair.of {
                 pair.since -= motion.patches[patch as usize].earlier;
@@ -178,8 +174,11 @@ impl NearFeatures {
         for patch in &mut motion.patches {
             patch.earlier = 0.0;
         }
-        self.folds.begin_tick(motion.approached);
-        motion.approached = 0.0;
+    }
+
+    /// Ends the sub-step.
+    pub fn pass(&mut self, cloths: &[Participant], motion: &Motion) {
+        self.folds.pass(cloths, motion);
     }
 
     /// Looks at the patches that have used up what they may, but for a `reserve` (m). Returns the approach of any two
@@ -200,7 +199,7 @@ impl NearFeatures {
         for &index in &due {
             let pair = &mut self.pairs[index as usize];
             let had_contacts = pair.has_contacts();
-            if self.folds.keep_apart(cloths, motion, pair.of) {
+            if self.folds.keep_apart(cloths, motion, pair) {
                 are_apart = true;
                 continue;
             }
@@ -252,9 +251,9 @@ impl NearFeatures {
         self.due = due;
         if are_apart {
             self.retain(|folds, pair| {
-                let is_apart = folds.keep_apart(cloths, motion, pair.of);
+                let is_apart = folds.keep_apart(cloths, motion, pair);
                 if is_apart {
-                    folds.forget(cloths, motion, pair.of);
+                    folds.forget(pair);
                 }
                 !is_apart
             });

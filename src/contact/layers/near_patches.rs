@@ -158,8 +158,9 @@ impl PatchBoxes {
                     };
                     // Only a fold makes neighbours a pair.
                     let are_neighbours = || {
-                        let windows = cloth.sheet.windows();
-                        other == own && windows.are_neighbours([patch - first, node.patch])
+                        let of =
+                            || [patch.min(second), patch.max(second)].map_inline(|of| of - first);
+                        other == own && cloth.sheet.windows().pair_of(of()).is_some()
                     };
                     if is_first && !had.overlaps(&had_second) && !are_neighbours() {
                         found([patch.min(second), patch.max(second)]);

@@ -20,6 +20,8 @@ const LEFT_ALONE: f32 = 0.25;
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct PatchPair {
     pub of: [u32; 2],
+    /// Which neighbours they are among [all](super::folds), if they are.
+    pub neighbours: Option<u32>,
     /// The vector between them, and what they had used, when they were last looked at (m).
     between: Vec3A,
     pub since: f32,
@@ -67,9 +69,10 @@ impl Candidate {
 
 impl PatchPair {
     #[inline]
-    pub fn new(of: [u32; 2], is_tangled: bool) -> Self {
+    pub fn new(of: [u32; 2], neighbours: Option<u32>, is_tangled: bool) -> Self {
         Self {
             of,
+            neighbours,
             between: Vec3A::ZERO,
             since: 0.0,
             slack: f32::NEG_INFINITY,

@@ -21,16 +21,17 @@
 
 use std::{ops::Range, sync::Arc};
 
-use bevy::{math::Vec3A, platform::collections::HashSet};
+use bevy::platform::collections::HashSet;
 
-use super::{tangents::Tangents, windows::Windows};
+use super::windows::Windows;
 use crate::{
-    cloth::{ByParticle, Surface},
+    cloth::{ByParticle, ClothGrid, Surface},
     hierarchy::QuadTree,
 };
 
-/// Largest number of particles that a patch of a mesh owns.
+/// Largest number of particles that a patch of a mesh owns, and of rows and columns that one of a grid does.
 const OWNED: u32 = 8;
+const OWNED_ACROSS: u32 = 2;
 
 /// A surface in patches of a few faces, and a tree over them, for contact of cloth with cloth. It depends only on the
 /// rest shape, is built once, and is shared.
@@ -106,9 +107,8 @@ impl Sheet {
         }
         let mut seen = HashSet::new();
         if let Some(grid) = surface.as_grid() {
-            sheet.windows = Windows::new([grid.rows(), grid.columns()]);
-            let [rows, columns] = sheet.windows.size();
-            sheet.add_of_grid([0..rows, 0..columns], &mut seen);
+            let [rows, columns] = [grid.rows(), grid.columns()].map(|of| of.div_ceil(OWNED_ACROSS));
+            sheet.add_of_grid(grid, [0..rows, 0..columns], &mut seen);
         } else {
             let mut leaves = vec![0; tree.len()];
             for index in (0..tree.len()).rev() {
@@ -120,6 +120,17 @@ impl Sheet {
             sheet.add_of_mesh(tree, 0, &leaves, &mut seen);
         }
         sheet.find_patches();
+        sheet.windows = Windows::new(
+            surface,
+            sheet.patches.len(),
+            |particle| sheet.patches_with.of(particle),
+            |patch| {
+                let particles = sheet.particles_of(patch);
+                let faces = sheet.faces_of(patch).iter();
+                let named = |face: &[u16; 3]| face.map(|corner| particles[usize::from(corner)]);
+                faces.map(named).collect()
+            },
+        );
         sheet
     }
 
@@ -173,17 +184,27 @@ impl Sheet {
 
     /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index. The grid's own
     /// tree has other patches than windows need.
-    fn add_of_grid(&mut self, of: [Range<u32>; 2], seen: &mut HashSet<[u32; 2]>) -> u32 {
+    fn add_of_grid(
+        &mut self,
+        grid: &ClothGrid,
+        of: [Range<u32>; 2],
+        seen: &mut HashSet<[u32; 2]>,
+    ) -> u32 {
         let (index, mut node) = self.add_node();
         let [rows, columns] = of;
         if rows.len() == 1 && columns.len() == 1 {
-            let owned: Vec<u32> = self.windows.put([rows.start, columns.start]).collect();
-            self.add_patch(&owned, seen);
+            let owned = |at: u32, end: u32| OWNED_ACROSS * at..(OWNED_ACROSS * (at + 1)).min(end);
+            let columns = owned(columns.start, grid.columns());
+            let owned = owned(rows.start, grid.rows()).flat_map(|row| {
+                let particle = move |column| row * grid.columns() + column;
+                columns.clone().map(particle)
+            });
+            self.add_patch(&owned.collect::<Vec<_>>(), seen);
             return index as u32;
         }
         for rows in halves(&rows) {
             for columns in halves(&columns) {
-                let child = self.add_of_grid([rows.clone(), columns], seen);
+                let child = self.add_of_grid(grid, [rows.clone(), columns], seen);
                 node.children[node.child_count as usize] = child;
                 node.child_count += 1;
             }
@@ -277,20 +298,6 @@ impl Sheet {
     #[inline]
     pub(super) fn windows(&self) -> &Windows {
         &self.windows
-    }
-
-    /// A lower bound of the distance between any two features without a common particle in a window (m), from its tangents at
-    /// these positions.
-    #[inline]
-    pub(super) fn unfolded(&self, window: usize, places: &[Vec3A]) -> f32 {
-        let grid = self.surface.as_grid();
-        let Some(grid) = grid.filter(|grid| grid.rope_radius().is_none()) else {
-            return f32::NEG_INFINITY;
-        };
-        let [rows, columns] = self.windows.particles_in(window);
-        let stride = grid.columns() as usize;
-        let rows = rows.map(|row| &places[row * stride..][columns.clone()]);
-        Tangents::of(rows, grid.spacing()).unfolded() * self.closest
     }
 
     /// The particles of a patch's features.

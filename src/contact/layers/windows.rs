@@ -1,112 +1,131 @@
-//! The patches of a grid, row by row, and the windows of 2 × 2 patches over them.
+//! Windows: neighbouring patches that meet at a particle.
+//!
+//! ```text
+//!   ┌───┬───┬───┬───┐          ╲ a │ b ╱
+//!   │ a │ b │   │   │           ╲__│__╱        patches that have features of one particle are in a window;
+//!   ├───┼───┼───┼───┤           ╱  c  ╲        two patches of a window are neighbours
+//!   │ c │ d │   │   │
+//!   └───┴───┴───┴───┘
+//! ```
 
-use std::ops::Range;
+use super::flattened::{Flattened, Flattening};
+use crate::cloth::{ByParticle, Surface};
 
-use crate::cloth::MapInline;
-
-/// Number of rows and of columns of particles that a patch of a grid owns.
-pub(super) const OWNED: u32 = 2;
-
-/// The windows of a grid; none for a mesh.
+/// The windows of a sheet, and which patches are neighbours in them.
 #[derive(Debug, Default)]
 pub(super) struct Windows {
-    /// Number of rows and columns of particles, and of patches.
-    particles: [u32; 2],
-    size: [u32; 2],
-    /// The patches row by row, and the row and column of each patch.
-    patches: Vec<u32>,
-    places: Vec<[u32; 2]>,
+    /// Laid flat, where that is possible.
+    flattened: Vec<Option<Flattened>>,
+    /// The patches of each window, in order.
+    patches: ByParticle<u32>,
+    /// The neighbours of each patch, itself included: those that do not come before it.
+    neighbours: ByParticle<u32>,
+    /// The windows of each patch with each of its neighbours.
+    shared: ByParticle<u32>,
 }
 
 impl Windows {
-    /// The windows of a grid with these columns and rows, without patches.
-    pub fn new(particles: [u32; 2]) -> Self {
-        let size = particles.map_inline(|of| of.div_ceil(OWNED));
-        Self {
-            particles,
-            size,
-            patches: vec![0; (size[0] * size[1]) as usize],
-            places: Vec::new(),
+    /// The windows of patches of a surface. `patches_with` returns the patches with features of a particle, in order, `faces_of` the
+    /// faces of a patch.
+    pub fn new<'a>(
+        surface: &'a Surface,
+        patches: usize,
+        patches_with: impl Fn(u32) -> &'a [u32],
+        faces_of: impl Fn(u32) -> Vec<[u32; 3]>,
+    ) -> Self {
+        let mut sets: Vec<&[u32]> = (0..surface.len() as u32).map(patches_with).collect();
+        sets.sort_unstable_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
+        sets.dedup();
+        // A set within another is no window of its own.
+        let mut windows_of: Vec<Vec<usize>> = vec![Vec::new(); patches];
+        let mut windows: Vec<&[u32]> = Vec::new();
+        for set in sets {
+            let Some(first) = set.first() else { continue };
+            let has_all = |window: &usize| {
+                let patches = windows[*window];
+                set.iter().all(|patch| patches.contains(patch))
+            };
+            if windows_of[*first as usize].iter().any(has_all) {
+                continue;
+            }
+            for &patch in set {
+                windows_of[patch as usize].push(windows.len());
+            }
+            windows.push(set);
         }
-    }
-
-    /// Number of rows and columns of patches.
-    pub fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
-    /// Puts the next patch at a row and column. Returns the particles that it owns.
-    pub fn put(&mut self, place: [u32; 2]) -> impl Iterator<Item = u32> + use<> {
-        let [row, column] = place;
-        self.patches[(row * self.size[1] + column) as usize] = self.places.len() as u32;
-        self.places.push(place);
-        let [rows, columns] = self.particles;
-        let range = |at: u32, end: u32| OWNED * at..(OWNED * (at + 1)).min(end);
-        let owned = range(column, columns);
-        range(row, rows)
-            .flat_map(move |row| owned.clone().map(move |column| row * columns + column))
-    }
-
-    /// Number of rows and columns of windows. A single row of patches is in one row of windows.
-    fn counts(&self) -> [u32; 2] {
-        self.size
-            .map_inline(|of| of.saturating_sub(1).max(1).min(of))
+        let mut pairs: Vec<[u32; 3]> = Vec::new();
+        for (window, patches) in windows.iter().enumerate() {
+            for (at, &a) in patches.iter().enumerate() {
+                pairs.extend(patches[at..].iter().map(|&b| [a, b, window as u32]));
+            }
+        }
+        pairs.sort_unstable();
+        let mut neighbours: Vec<[u32; 2]> = pairs.iter().map(|&[a, b, _]| [a, b]).collect();
+        neighbours.dedup();
+        let mut flattening = Flattening::new(surface);
+        let flattened = windows.iter().map(|patches| {
+            let faces = patches.iter().flat_map(|&patch| faces_of(patch));
+            flattening.flatten(faces)
+        });
+        let flattened = flattened.collect();
+        let each = windows.iter().enumerate();
+        let shared = pairs.chunk_by(|a, b| a[..2] == b[..2]).enumerate();
+        Self {
+            flattened,
+            patches: ByParticle::new(windows.len(), || {
+                let each = each.clone();
+                each.flat_map(|(index, patches)| patches.iter().map(move |&of| (index as u32, of)))
+            }),
+            shared: ByParticle::new(neighbours.len(), || {
+                let shared = shared.clone();
+                shared.flat_map(|(pair, of)| of.iter().map(move |of| (pair as u32, of[2])))
+            }),
+            neighbours: ByParticle::new(patches, || neighbours.iter().map(|&[a, b]| (a, b))),
+        }
     }
 
     /// Number of windows.
     pub fn count(&self) -> usize {
-        let [rows, columns] = self.counts();
-        (rows * columns) as usize
+        self.flattened.len()
     }
 
-    /// The rows and columns of patches in a window.
-    fn range_of(&self, window: usize) -> [Range<u32>; 2] {
-        let columns = self.counts()[1];
-        let at = [window as u32 / columns, window as u32 % columns];
-        [0, 1].map_inline(|axis| at[axis]..(at[axis] + 2).min(self.size[axis]))
+    /// Number of pairs of neighbours.
+    pub fn pair_count(&self) -> usize {
+        self.shared.len()
     }
 
-    /// The patches in a window, row by row.
-    pub fn patches_in(&self, window: usize) -> impl Iterator<Item = u32> {
-        let [rows, columns] = self.range_of(window);
-        let places = rows.flat_map(move |row| columns.clone().map(move |column| [row, column]));
-        places.map(|[row, column]| self.patches[(row * self.size[1] + column) as usize])
-    }
-
-    /// The rows and columns of particles of all features in a window.
+    /// A window laid flat; `None` if it cannot be.
     #[inline]
-    pub fn particles_in(&self, window: usize) -> [Range<usize>; 2] {
-        let of = self.range_of(window);
-        [0, 1].map_inline(|axis| {
-            let last = (OWNED * of[axis].end).min(self.particles[axis] - 1);
-            (OWNED * of[axis].start) as usize..last as usize + 1
-        })
+    pub fn flattened(&self, window: usize) -> Option<&Flattened> {
+        self.flattened[window].as_ref()
     }
 
-    /// The windows in which two patches are.
+    /// The patches in a window, in order, and the place of the first among those of all windows.
     #[inline]
-    pub fn with(&self, of: [u32; 2]) -> impl Iterator<Item = usize> {
-        let place = |patch: u32| self.places.get(patch as usize).copied();
-        let [a, b] = of.map_inline(|patch| place(patch).unwrap_or_default());
-        let counts = self.counts();
-        let [rows, columns] = [0, 1].map_inline(|axis| {
-            let first = a[axis].max(b[axis]).saturating_sub(1);
-            first..(a[axis].min(b[axis]) + 1).min(counts[axis])
-        });
-        rows.flat_map(move |row| columns.clone().map(move |column| (row, column)))
-            .map(move |(row, column)| (row * counts[1] + column) as usize)
+    pub fn patches_in(&self, window: usize) -> (usize, &[u32]) {
+        let patches = self.patches.range_of(window as u32);
+        (patches.start, self.patches.of(window as u32))
     }
 
-    /// Whether some window has both patches.
-    #[inline]
-    pub fn are_neighbours(&self, of: [u32; 2]) -> bool {
-        self.with(of).next().is_some()
+    /// Number of patches in all windows: one counts in each of its windows.
+    pub fn place_count(&self) -> usize {
+        let last = self.count().checked_sub(1);
+        last.map_or(0, |last| self.patches.range_of(last as u32).end)
     }
 
-    /// Which neighbour the second patch is of the first, which is before it or the same: 1 to 5.
+    /// The pair of neighbours that two patches are, in order.
     #[inline]
-    pub fn neighbour(&self, of: [u32; 2]) -> u32 {
-        let [a, b] = of.map_inline(|patch| self.places[patch as usize]);
-        3 * (b[0] - a[0]) + b[1] + 1 - a[1]
+    pub fn pair_of(&self, [a, b]: [u32; 2]) -> Option<usize> {
+        if a as usize >= self.neighbours.len() {
+            return None;
+        }
+        let at = self.neighbours.of(a).binary_search(&b).ok()?;
+        Some(self.neighbours.range_of(a).start + at)
+    }
+
+    /// The windows that have both patches of a pair of neighbours.
+    #[inline]
+    pub fn with(&self, pair: usize) -> &[u32] {
+        self.shared.of(pair as u32)
     }
 }

@@ -3,10 +3,13 @@
 use bevy::math::{Vec3, Vec3A};
 
 use super::{Sheeted, participants, settings, thrown::Draw};
-use crate::contact::layers::motion::Motion;
+use crate::contact::layers::{
+    motion::Motion,
+    patch_pair::{PatchPair, Place},
+};
 
-/// Particles that move at random, and some of which are put elsewhere twice: no two come nearer than the bound says, and each
-/// patch is as if all had been measured.
+/// Particles that move at random, and some of which are put elsewhere twice: no two of two patches come nearer than the bound
+/// says, and each patch is as if all had been measured.
 #[test]
 fn particles_come_no_nearer_than_their_bound() {
     let mut draw = Draw(5);
@@ -38,12 +41,23 @@ fn particles_come_no_nearer_than_their_bound() {
             let ends = motion.ends.clone();
             motion.measure(&of);
             assert_eq!(ends, motion.ends);
-            for i in 0..motion.end.len() {
-                for j in 0..i {
+            let patches = 0..motion.patches.len() as u32;
+            let pairs = patches
+                .clone()
+                .flat_map(|a| (a..patches.end).map(move |b| [a, b]));
+            for of_pair in pairs {
+                let mut pair = PatchPair::new(of_pair, None, false);
+                let used = Place::of(&mut pair, &of, &motion, 0.0).used;
+                let [first, second] = of_pair.map(|patch| of[0].sheet.particles_of(patch));
+                for [i, j] in first
+                    .iter()
+                    .flat_map(|i| second.iter().map(move |j| [i, j]))
+                {
+                    let [i, j] = [i, j].map(|of| *of as usize);
                     let nearer = motion.start[i].distance(motion.start[j])
                         - motion.end[i].distance(motion.end[j]);
                     // Positions up to 30 m from the origin.
-                    assert!(nearer <= motion.approach + 30.0 * 8.0 * f32::EPSILON);
+                    assert!(nearer <= used + 30.0 * 8.0 * f32::EPSILON);
                 }
             }
             motion.pass(&of, 0.0005);

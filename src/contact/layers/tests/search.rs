@@ -7,7 +7,7 @@ use bevy::math::{DVec3, Vec3, Vec3A};
 use super::{Scene, Sheeted, participants, settings};
 use crate::{
     cloth::{Cloth, Surface},
-    contact::layers::{MutualContact, patch_pair::Candidate, sheet::Sheet},
+    contact::layers::{MutualContact, flattened::Scratch, patch_pair::Candidate, sheet::Sheet},
     hierarchy::QuadTree,
 };
 
@@ -260,6 +260,7 @@ fn no_pair_is_lost_on_the_way() {
                 known.insert(feature(candidate));
             });
             contact.motion.pass(&of, 0.05 * thickness);
+            contact.near.pass(&of, &contact.motion);
             let places = places(&cloths[0]);
             brute.near(
                 &places,
@@ -304,6 +305,14 @@ fn no_pair_is_lost_after_a_sudden_fold() {
     assert!(near > 0);
 }
 
+/// A lower bound of the distance of features without a common particle in a window (m).
+fn unfolded(sheet: &Sheet, window: usize, places: &[Vec3A]) -> f32 {
+    let flattened = sheet.windows().flattened(window);
+    flattened.map_or(f32::NEG_INFINITY, |of| {
+        of.unfolded(places, &mut Scratch::default()) * of.closest()
+    })
+}
+
 /// Long grids and strips need no search either: all patches that share particles are proved apart.
 #[test]
 fn long_sheets_are_proved_flat() {
@@ -324,7 +333,7 @@ fn long_sheets_are_proved_flat() {
         let bent = bent.map(|at| Vec3A::from(*at + 0.01 * (7.0 * at.x).sin() * Vec3::Y));
         let places: Vec<Vec3A> = bent.collect();
         for window in 0..sheet.windows().count() {
-            let bound = sheet.unfolded(window, &places);
+            let bound = unfolded(&sheet, window, &places);
             assert!(bound > 0.01, "{columns} × {rows}, {window}: {bound}");
         }
         let patches = 0..sheet.patch_count() as u32;
@@ -336,7 +345,7 @@ fn long_sheets_are_proved_flat() {
             let own = sheet.particles_of(a);
             let are_joined = own.iter().any(|each| others.contains(each));
             assert!(
-                !are_joined || sheet.windows().are_neighbours([a, b]),
+                !are_joined || sheet.windows().pair_of([a, b]).is_some(),
                 "{a} and {b}"
             );
         }
@@ -369,14 +378,10 @@ fn what_is_hardly_bent_keeps_its_points_apart() {
                 .collect::<Vec<_>>()
             };
             for window in 0..cloth.sheet.windows().count() {
-                let bound = cloth.sheet.unfolded(window, &places);
+                let bound = unfolded(&cloth.sheet, window, &places);
                 has_bound += usize::from(bound > 0.0);
-                let all: Vec<_> = cloth
-                    .sheet
-                    .windows()
-                    .patches_in(window)
-                    .map(points)
-                    .collect();
+                let (_, patches) = cloth.sheet.windows().patches_in(window);
+                let all: Vec<_> = patches.iter().map(|&patch| points(patch)).collect();
                 let pairs = (0..all.len()).flat_map(|a| (a..all.len()).map(move |b| [a, b]));
                 for [first, second] in pairs.map(|of| of.map(|at| &all[at])) {
                     for (at, of) in first {
