@@ -45,6 +45,46 @@ struct Window {
     slack: f32,
 }
 
+impl Window {
+    /// Measures one with its particles at these places. It has to unfold as far as it is folded before it is measured again.
+    fn measured(
+        cloth: &Participant,
+        window: usize,
+        places: &[Vec3A],
+        scratch: &mut Scratch,
+    ) -> Self {
+        let thickness = cloth.settings.thickness;
+        let (mut is_folded, mut slack) = (true, f32::INFINITY);
+        if let Some(flattened) = cloth.sheet.windows().flattened(window) {
+            let closest = flattened.closest();
+            let least = LEAST * thickness.min((closest - thickness).max(OF_REST * closest));
+            slack = flattened.slack(flattened.unfolded(places, scratch), thickness, OF_REST);
+            // Also for NaN.
+            is_folded = !(slack > least);
+            if is_folded {
+                slack = (least - slack).clamp(AGAIN[0] * thickness, AGAIN[1] * thickness);
+            }
+        }
+        Self {
+            is_folded,
+            is_new: true,
+            slack,
+        }
+    }
+}
+
+/// Upper bound of the approach of any two points of these patches since their references (m).
+#[inline]
+fn used(patches: &[u32], ends: &[Vec4], references: &[Vec4]) -> f32 {
+    let each = || patches.iter().map(|&patch| ends[patch as usize]);
+    let middle = each().sum::<Vec4>().xyz() / patches.len() as f32;
+    let used = each().zip(references).map(|(end, reference)| {
+        let moved = end - middle.extend(0.0) - *reference;
+        Vec3A::from_vec4(moved).length() + moved.w
+    });
+    2.0 * used.fold(f32::NEG_INFINITY, f32::max)
+}
+
 impl Folds {
     /// Begins with windows that are not measured.
     pub fn reset(&mut self, among: &Meets<impl Fn(usize, usize) -> bool>) {
@@ -127,75 +167,62 @@ impl Folds {
     ) -> f32 {
         let mut left = f32::INFINITY;
         for (index, cloth) in cloths.iter().enumerate() {
-            let [first, first_reference, first_pair] = self.firsts[index];
+            let [first, first_reference, _] = self.firsts[index];
             let [first_particle, first_patch, ..] = motion.firsts[index];
             let places = &motion.end[first_particle as usize..];
             let ends = &motion.ends[first_patch as usize..];
-            let thickness = cloth.settings.thickness;
             for window in 0..self.firsts[index + 1][0] - first {
-                let state = &mut self.windows[first + window];
+                let state = self.windows[first + window];
                 if state.slack == f32::INFINITY {
                     continue;
                 }
                 let (from, patches) = cloth.sheet.windows().patches_in(window);
-                let references = &self.references[first_reference + from..];
-                let each = || patches.iter().map(|&patch| ends[patch as usize]);
-                let middle = each().sum::<Vec4>().xyz() / patches.len() as f32;
-                let used = each().zip(references).map(|(end, reference)| {
-                    let apart = *reference - end + middle.extend(0.0);
-                    Vec3A::from_vec4(apart).length() - apart.w
-                });
-                let used = 2.0 * used.fold(f32::NEG_INFINITY, f32::max);
-                // False for NaN.
-                if state.slack - used > reserve && !state.is_new {
-                    if !state.is_folded {
-                        left = left.min(state.slack - used);
+                let used = used(patches, ends, &self.references[first_reference + from..]);
+                let mut free = state.slack - used;
+                // Also for NaN.
+                if state.is_new || !(free > reserve) {
+                    let measured = Window::measured(cloth, window, places, &mut self.scratch);
+                    self.windows[first + window] = measured;
+                    self.has_new = true;
+                    if measured.is_folded && !state.is_folded {
+                        self.pair(cloth, index, window, |[a, b], pair| {
+                            found([first_patch + a, first_patch + b], pair);
+                        });
                     }
-                    continue;
+                    free = measured.slack;
                 }
-                state.is_new = true;
-                self.has_new = true;
-                let measured = cloth.sheet.windows().flattened(window).map(|flattened| {
-                    let unfolded = flattened.unfolded(places, &mut self.scratch);
-                    let closest = flattened.closest();
-                    let least = LEAST * thickness.min((closest - thickness).max(OF_REST * closest));
-                    (flattened.slack(unfolded, thickness, OF_REST), least)
-                });
-                let was_folded = std::mem::replace(&mut state.is_folded, true);
-                match measured {
-                    None => state.slack = f32::INFINITY,
-                    Some((slack, least)) if slack > least => {
-                        (state.is_folded, state.slack) = (false, slack);
-                        left = left.min(slack);
-                        continue;
-                    }
-                    // It has to come apart by as much.
-                    Some((slack, least)) => {
-                        state.slack =
-                            (least - slack).clamp(AGAIN[0] * thickness, AGAIN[1] * thickness)
-                    }
-                }
-                if was_folded {
-                    continue;
-                }
-                for (at, &a) in patches.iter().enumerate() {
-                    for &b in &patches[at..] {
-                        let Some(pair) = cloth.sheet.windows().pair_of([a, b]) else {
-                            continue;
-                        };
-                        let mut windows = cloth.sheet.windows().with(pair).iter();
-                        let is_pair = &mut self.are_pairs[first_pair + pair];
-                        if !*is_pair
-                            && windows.all(|&of| self.windows[first + of as usize].is_folded)
-                        {
-                            *is_pair = true;
-                            found([first_patch + a, first_patch + b], first_pair + pair);
-                        }
-                    }
+                if !self.windows[first + window].is_folded {
+                    left = left.min(free);
                 }
             }
         }
         left
+    }
+
+    /// Makes pairs of the neighbours that no other window keeps apart than this one, which has just folded.
+    fn pair(
+        &mut self,
+        cloth: &Participant,
+        index: usize,
+        window: usize,
+        mut found: impl FnMut([u32; 2], usize),
+    ) {
+        let [first, _, first_pair] = self.firsts[index];
+        let windows = cloth.sheet.windows();
+        let (_, patches) = windows.patches_in(window);
+        for (at, &a) in patches.iter().enumerate() {
+            for &b in &patches[at..] {
+                let Some(pair) = windows.pair_of([a, b]) else {
+                    continue;
+                };
+                let is_folded = |of: &u32| self.windows[first + *of as usize].is_folded;
+                let is_pair = &mut self.are_pairs[first_pair + pair];
+                if !*is_pair && windows.with(pair).iter().all(is_folded) {
+                    *is_pair = true;
+                    found([a, b], first_pair + pair);
+                }
+            }
+        }
     }
 
     /// Whether two patches are neighbours that cannot touch.

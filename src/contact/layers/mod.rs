@@ -4,7 +4,7 @@
 //!
 //! ```text
 //!   cloth → patches of a few faces (sheet)
-//!   neighbouring patches whose tangents differ much (windows, folds)                → near pairs of patches
+//!   neighbouring patches in sharp folds (windows, flattened, folds)                 → near pairs of patches
 //!   boxes with clearance around other patches, searched from the top down (near_patches)   → near pairs of patches
 //!   features of near pairs, culled by boxes, compared eight at a time (compare, lanes) → slack, listed features
 //!   the pair's own motion since then (motion): used > until?                        → look again (near_features)
@@ -18,7 +18,8 @@
 //! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
 //!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
 //!    less, they are a thickness apart.
-//! 3. Neighbouring patches of a grid whose [tangents](tangents) differ little are apart, whatever their motion was ([folds]).
+//! 3. Neighbouring patches are apart, whatever their motion was, while a [projection](flattened) of their faces onto a plane keeps
+//!    all points apart there ([folds]). They fold by up to a right angle to either side.
 //! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
 //!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
 //!    it has not passed, or it is stopped.

@@ -6,8 +6,8 @@
 //! its springs are torn. The tree over patches only orders the search: its boxes contain those of their children. The radii of the
 //! [rest-shape rule](crate::hierarchy), which paths along springs bound, are not used here.
 //!
-//! Only 3 assumes more: that a window is whole, and so convex at rest. A torn grid counts as a mesh and has no windows. All
-//! of its pairs of patches, neighbours as well, are found by their boxes.
+//! Only 3 assumes more: that the faces of a [window](super::windows) cover their hull at rest. One that a tear crosses is never laid
+//! flat, so its pairs of neighbours are compared like any others.
 //!
 //! A particle that came apart is several, so the sides of a cut have no common particle, and are pairs like any others.
 //! At rest a cut has a width. Its sides are kept apart by at most half of that: otherwise each would push the other open. At the
@@ -182,8 +182,8 @@ impl Sheet {
         index as u32
     }
 
-    /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index. The grid's own
-    /// tree has other patches than windows need.
+    /// Adds a node of these rows and columns of patches of a grid, and all below it. Returns its index. The patches of the grid's own
+    /// tree would be of different sizes.
     fn add_of_grid(
         &mut self,
         grid: &ClothGrid,
@@ -294,7 +294,7 @@ impl Sheet {
         self.patches.len()
     }
 
-    /// The windows of a grid; none for a mesh.
+    /// The neighbouring patches that meet at a particle.
     #[inline]
     pub(super) fn windows(&self) -> &Windows {
         &self.windows

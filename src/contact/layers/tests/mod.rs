@@ -1,5 +1,6 @@
 //! Scenes in which cloth touches cloth, with no plugin around them.
 
+mod folds;
 mod hold;
 mod lanes;
 mod motion;

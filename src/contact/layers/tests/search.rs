@@ -1,18 +1,14 @@
 //! No pair of near features is lost, and patches that are skipped cannot touch.
 
-use std::{collections::HashSet, sync::Arc};
+use std::collections::HashSet;
 
-use bevy::math::{DVec3, Vec3, Vec3A};
+use bevy::math::{DVec3, Vec3};
 
 use super::{Scene, Sheeted, participants, settings};
-use crate::{
-    cloth::{Cloth, Surface},
-    contact::layers::{MutualContact, flattened::Scratch, patch_pair::Candidate, sheet::Sheet},
-    hierarchy::QuadTree,
-};
+use crate::contact::layers::{MutualContact, patch_pair::Candidate};
 
 /// What a square of 1 m is bent into: flat, rolled up more and more, folded, wavy, crumpled.
-fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
+pub(super) fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
     vec![
         ("flat", |at| at),
         ("wavy", |at| {
@@ -44,7 +40,7 @@ fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
 pub(super) type Feature = (Vec<u32>, Vec<u32>);
 
 /// A pair, whichever way its features are named.
-fn named(first: &[u32], second: &[u32]) -> Feature {
+pub(super) fn named(first: &[u32], second: &[u32]) -> Feature {
     let sorted = |of: &[u32]| {
         let mut of = of.to_vec();
         of.sort_unstable();
@@ -88,7 +84,7 @@ pub(super) fn nearest(of: &[DVec3], point: DVec3) -> DVec3 {
 
 /// The distance of two features, by looking at all of both: by alternating projections, which ends in the nearest points of two
 /// convex sets.
-fn distance(first: &[DVec3], second: &[DVec3]) -> f64 {
+pub(super) fn distance(first: &[DVec3], second: &[DVec3]) -> f64 {
     let mut point = first[0];
     for _ in 0..400 {
         point = nearest(first, nearest(second, point));
@@ -303,101 +299,6 @@ fn no_pair_is_lost_after_a_sudden_fold() {
         },
     );
     assert!(near > 0);
-}
-
-/// A lower bound of the distance of features without a common particle in a window (m).
-fn unfolded(sheet: &Sheet, window: usize, places: &[Vec3A]) -> f32 {
-    let flattened = sheet.windows().flattened(window);
-    flattened.map_or(f32::NEG_INFINITY, |of| {
-        of.unfolded(places, &mut Scratch::default()) * of.closest()
-    })
-}
-
-/// Long grids and strips need no search either: all patches that share particles are proved apart.
-#[test]
-fn long_sheets_are_proved_flat() {
-    for [columns, rows] in [
-        [64, 32],
-        [32, 64],
-        [64, 8],
-        [8, 64],
-        [30, 20],
-        [24, 32],
-        [7, 100],
-    ] {
-        let cloth = Cloth::new(columns, rows, 0.04).lying();
-        let surface = Surface::of_grid(&cloth.grid(Vec3::ONE).expect("a valid grid"));
-        let surface = Arc::new(surface);
-        let sheet = Sheet::new(&surface, &QuadTree::of_surface(&surface, true));
-        let bent = surface.rest_positions().iter();
-        let bent = bent.map(|at| Vec3A::from(*at + 0.01 * (7.0 * at.x).sin() * Vec3::Y));
-        let places: Vec<Vec3A> = bent.collect();
-        for window in 0..sheet.windows().count() {
-            let bound = unfolded(&sheet, window, &places);
-            assert!(bound > 0.01, "{columns} × {rows}, {window}: {bound}");
-        }
-        let patches = 0..sheet.patch_count() as u32;
-        for (a, b) in patches
-            .clone()
-            .flat_map(|a| (a..patches.end).map(move |b| (a, b)))
-        {
-            let others = sheet.particles_of(b);
-            let own = sheet.particles_of(a);
-            let are_joined = own.iter().any(|each| others.contains(each));
-            assert!(
-                !are_joined || sheet.windows().pair_of([a, b]).is_some(),
-                "{a} and {b}"
-            );
-        }
-    }
-}
-
-/// Whatever a grid is bent into, no two points of two patches are nearer than the bound says, but for features
-/// with a common particle. Points are vertices, middles of edges and middles of faces.
-#[test]
-fn what_is_hardly_bent_keeps_its_points_apart() {
-    let mut has_bound = 0;
-    for (name, shape) in shapes() {
-        for scale in [1.0, 0.4, 0.1] {
-            let shape = move |at: Vec3| shape(at * scale) / scale;
-            let cloth = Sheeted::new(9, 1.0, shape);
-            let places: Vec<Vec3A> = cloth.particles.positions().map(Vec3A::from).collect();
-            let points = |patch: u32| {
-                let particles = cloth.sheet.particles_of(patch);
-                let named = |of: &[u16]| -> Vec<u32> {
-                    of.iter().map(|&at| particles[usize::from(at)]).collect()
-                };
-                let vertices = particles.iter().map(|&particle| vec![particle]);
-                let edges = cloth.sheet.edges_of(patch).iter().map(|of| named(of));
-                let faces = cloth.sheet.faces_of(patch).iter().map(|of| named(of));
-                let all = vertices.chain(edges).chain(faces);
-                all.map(|of| {
-                    let sum = of.iter().map(|&each| places[each as usize]).sum::<Vec3A>();
-                    (sum / of.len() as f32, of)
-                })
-                .collect::<Vec<_>>()
-            };
-            for window in 0..cloth.sheet.windows().count() {
-                let bound = unfolded(&cloth.sheet, window, &places);
-                has_bound += usize::from(bound > 0.0);
-                let (_, patches) = cloth.sheet.windows().patches_in(window);
-                let all: Vec<_> = patches.iter().map(|&patch| points(patch)).collect();
-                let pairs = (0..all.len()).flat_map(|a| (a..all.len()).map(move |b| [a, b]));
-                for [first, second] in pairs.map(|of| of.map(|at| &all[at])) {
-                    for (at, of) in first {
-                        for (to, others) in second {
-                            let apart = at.distance(*to);
-                            assert!(
-                                apart >= bound || of.iter().any(|each| others.contains(each)),
-                                "{name}: {apart}, {bound}, {of:?}, {others:?}"
-                            );
-                        }
-                    }
-                }
-            }
-        }
-    }
-    assert!(has_bound > 100, "{has_bound}");
 }
 
 /// A search ends, however many features are near each other, and finds no more than it may: of a sheet that is crammed into a tenth of a

@@ -94,6 +94,7 @@ fn no_pair_of_a_torn_cloth_is_lost() {
                 contacts.insert(feature(candidate));
             });
             contact.motion.pass(&of, 0.05 * thickness);
+            contact.near.pass(&of, &contact.motion);
             brute.near(&places(&cloths[0]), reach, |feature, apart| {
                 let name = || format!("step {step} of {seed}: {feature:?}, {apart} m apart");
                 assert!(listed.contains(&feature), "not listed: {}", name());
