@@ -7,8 +7,6 @@ use bevy::{
     transform::components::Transform,
 };
 
-#[cfg(feature = "mesh")]
-use super::rope_mesh::{RopeError, path_of};
 use super::{
     error::ClothError,
     grid::{ClothGrid, ClothPlane, GridError, GridShape},
@@ -18,7 +16,12 @@ use super::{
     presence::log_unsimulated,
     quantity::QuantityError,
     rope::{RopePath, RopeShape},
-    surface::{MeshError, Surface, TriangleMesh},
+    surface::{Surface, TriangleMesh},
+};
+#[cfg(feature = "mesh")]
+use super::{
+    rope_mesh::{RopeError, path_of},
+    surface::MeshError,
 };
 
 /// A cloth: a grid of particles, any triangle mesh, or a [`rope`](Self::rope).
@@ -139,7 +142,7 @@ impl ClothShape {
                 Ok(Surface::of_mesh(&mesh, *weld, scale)?)
             }
             #[cfg(feature = "mesh")]
-            Self::Mesh { .. } => Err(ClothError::Mesh(MeshError::NotLoaded)),
+            Self::Mesh { .. } => Err(MeshError::NotLoaded.into()),
         }
     }
 }

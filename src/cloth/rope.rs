@@ -120,10 +120,7 @@ impl RopePath {
         let is_near = |point: &Vec3| point.abs().max_element() < FARTHEST && point.is_finite();
         if let Some(vertex) = points.iter().position(|point| !is_near(point)) {
             let position = points[vertex];
-            return Err(ClothError::Mesh(MeshError::VertexNotFinite {
-                vertex,
-                position,
-            }));
+            return Err(MeshError::VertexNotFinite { vertex, position }.into());
         }
         let unscaled = along(&self.points).1;
         let is_length = |length: f32| length > 0.0 && length.is_finite();

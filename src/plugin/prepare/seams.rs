@@ -145,7 +145,7 @@ impl SeamQueryItem<'_, '_> {
         let mut is_ready = true;
         for (place, cloth) in of.into_iter().enumerate() {
             let Ok(item) = cloths.get(cloth) else {
-                return Err(ClothError::Target(TargetError::NoSuchCloth { cloth }));
+                return Err(TargetError::NoSuchCloth { cloth }.into());
             };
             orders[place].0 = item.order.copied().unwrap_or_default();
             is_ready &= item.scratch.step.is_some() && item.built.matches(item.particles);

@@ -110,7 +110,7 @@ impl AsyncBuilds {
         };
         self.all[known].idle = 0;
         if !self.all[known].task.is_finished() {
-            return Err(ClothError::Mesh(MeshError::Loading));
+            return Err(MeshError::Loading.into());
         }
         block_on(self.all.swap_remove(known).task).map(Some)
     }
@@ -156,7 +156,7 @@ impl AsyncBuilds {
             task: pool.spawn(async move {
                 if is_claimed.swap(true, Ordering::Relaxed) {
                     // Nobody waits for it.
-                    return Err(ClothError::Mesh(MeshError::Loading));
+                    return Err(MeshError::Loading.into());
                 }
                 request.build(&mesh, &alike)
             }),

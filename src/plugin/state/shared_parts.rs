@@ -91,7 +91,7 @@ impl SharedParts {
             }
         }
         self.builds.begin(request.clone(), mesh()?, alike, None);
-        Err(ClothError::Mesh(MeshError::Loading))
+        Err(MeshError::Loading.into())
     }
 
     /// Begins to build in the background what this cloth needs in its next tick, in place of what it needed before.

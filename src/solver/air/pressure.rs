@@ -73,7 +73,7 @@ impl ClothPressure {
         if surface.is_closed() {
             Ok(())
         } else {
-            Err(ClothError::Mesh(MeshError::NotClosed))
+            Err(MeshError::NotClosed.into())
         }
     }
 }

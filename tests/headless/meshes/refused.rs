@@ -48,16 +48,13 @@ fn what_is_no_cloth_is_named() {
     let (positions, triangles) = sheet(3, 3);
     let mut without = asset(&positions, &triangles);
     without.remove_attribute(Mesh::ATTRIBUTE_POSITION);
-    assert_eq!(
-        refused(without),
-        ClothError::Mesh(MeshError::WithoutPositions)
-    );
+    assert_eq!(refused(without), MeshError::WithoutPositions.into());
 
     let left_over = asset(&positions, &triangles);
     let left_over = left_over.with_inserted_indices(Indices::U32(vec![0, 1, 3, 4]));
     assert_eq!(
         refused(left_over),
-        ClothError::Mesh(MeshError::IndexCount { indices: 4 })
+        MeshError::IndexCount { indices: 4 }.into()
     );
 
     let mut nowhere = positions.clone();
@@ -91,10 +88,7 @@ fn what_is_no_cloth_is_named() {
 
     let flat: Vec<Vec3> = (0..9).map(|x| Vec3::X * x as f32).collect();
     let error = refused(asset(&flat, &triangles));
-    assert_eq!(
-        error,
-        ClothError::Mesh(MeshError::WithoutArea { triangles: 8 })
-    );
+    assert_eq!(error, MeshError::WithoutArea { triangles: 8 }.into());
 }
 
 /// A million vertices in a million places; and more vertices than are even looked at, all in one place.
@@ -122,10 +116,7 @@ fn a_mesh_may_be_too_large() {
     );
     let more = 8 * MAX_MESH_PARTICLES + 1;
     let error = refused(listed(vec![[0.0; 3]; more]));
-    assert_eq!(
-        error,
-        ClothError::Mesh(MeshError::TooLarge { particles: more })
-    );
+    assert_eq!(error, MeshError::TooLarge { particles: more }.into());
 }
 
 /// What is in the render world alone can't be read; one that is in both can.
@@ -134,7 +125,7 @@ fn what_the_renderer_took_is_not_readable() {
     let mut taken = sheet_asset(3, 3);
     taken.asset_usage = RenderAssetUsages::RENDER_WORLD;
     taken.take_gpu_data().expect("it was there");
-    assert_eq!(refused(taken), ClothError::Mesh(MeshError::NotReadable));
+    assert_eq!(refused(taken), MeshError::NotReadable.into());
 }
 
 /// Taken after the cloth was built, it matters no more: it is drawn and moves on.

@@ -218,7 +218,7 @@ impl ClothCollider {
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
             Self::Compound(ref parts) => compound(parts, scale),
-            Self::Mesh(_) => Err(ClothError::Mesh(MeshError::NotLoaded)),
+            Self::Mesh(_) => Err(MeshError::NotLoaded.into()),
             Self::Cylinder {
                 radius,
                 half_height,
@@ -353,7 +353,7 @@ fn compound(
         }
         // Rotating and then stretching along one axis would shear the part.
         if !is_even && !pose.rotation.is_near_identity() {
-            return Err(ClothError::Shape(ShapeError::SkewedPart { scale }));
+            return Err(ShapeError::SkewedPart { scale }.into());
         }
         let place = Vec3::from(pose.translation) * scale;
         let pose = Isometry3d::new(place, pose.rotation) * child.offset();

@@ -71,7 +71,7 @@ impl Parts {
         if sides != MeshSides::Closed
             || mesh::volume(mesh.vertices(), mesh.indices()) <= 1.0e-9 * size.powi(3)
         {
-            return Err(ClothError::Shape(ShapeError::FlatHull { points }));
+            return Err(ShapeError::FlatHull { points }.into());
         }
         self.add_built(pose, mesh.into(), sides);
         self.add_edges(pose, &edges, 0.0);

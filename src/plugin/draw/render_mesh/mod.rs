@@ -220,7 +220,7 @@ fn bind(
             }
             // It gets its components with the next tick.
             _ if cloths.contains(cloth) => continue,
-            _ => Err(ClothError::Target(TargetError::NoSuchCloth { cloth })),
+            _ => Err(TargetError::NoSuchCloth { cloth }.into()),
         };
         // A mesh that is being loaded is no fault.
         let outcome = match outcome {

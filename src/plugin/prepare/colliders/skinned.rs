@@ -69,10 +69,7 @@ impl SkinnedMotion {
         };
         let (needed, joints) = (triangles.joints(), self.now.len());
         if needed > joints {
-            return Err(ClothError::Skin(SkinError::MissingJoints {
-                needed,
-                joints,
-            }));
+            return Err(SkinError::MissingJoints { needed, joints }.into());
         }
         let place = take_to_frame(&mut self.now, triangles.carrier())?;
         let begins = self.last.len() != joints;

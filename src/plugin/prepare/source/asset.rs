@@ -113,9 +113,9 @@ impl Sources<'_, '_> {
             Some(LoadState::Failed(error)) => Err(ClothError::Mesh(MeshError::Failed {
                 reason: error.to_string(),
             })),
-            Some(LoadState::Loading) => Err(ClothError::Mesh(MeshError::Loading)),
+            Some(LoadState::Loading) => Err(MeshError::Loading.into()),
             Some(LoadState::NotLoaded | LoadState::Loaded) | None => {
-                Err(ClothError::Mesh(MeshError::NotLoaded))
+                Err(MeshError::NotLoaded.into())
             }
         }
     }

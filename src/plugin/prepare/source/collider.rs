@@ -77,7 +77,7 @@ impl ColliderMeshes<'_, '_> {
             return Ok(None);
         };
         let Ok(mesh) = self.meshes.get(entity) else {
-            return Err(ClothError::Mesh(MeshError::NotLoaded));
+            return Err(MeshError::NotLoaded.into());
         };
         self.sources.loaded(mesh.0.id(), known).map(Some)
     }
