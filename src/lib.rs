@@ -39,9 +39,12 @@ pub mod prelude {
     #[cfg(feature = "mesh")]
     pub use crate::cloth::RopeError;
     pub use crate::cloth::{
-        Cloth, ClothBackstop, ClothError, ClothFactor, ClothGrain, ClothMaterial, ClothMaterialMap,
-        ClothPaint, ClothParticles, ClothPlane, ClothShape, ClothSkin, ClothStiffening,
-        ClothTearing, ClothTears, ClothWeft, Corner, Pin, Pins, RopePath, RopeShape, Surface,
+        BoundsError, Cloth, ClothBackstop, ClothError, ClothFactor, ClothGrain, ClothMaterial,
+        ClothMaterialMap, ClothPaint, ClothParticles, ClothPlane, ClothShape, ClothSkin,
+        ClothStiffening, ClothTearing, ClothTears, ClothWeft, Corner, GrainError, GridError,
+        MeshError, PaintError, ParticleError, Pin, PinError, Pins, QuantityError, RopePath,
+        RopeShape, SelfCollisionError, ShapeError, SkinError, SpringError, Surface, TargetError,
+        TearError, TransformError,
     };
     pub use crate::contact::{
         ClothCollider, ClothLayers, ClothSelfCollision, ContactPoint, MeshCollider, NarrowPhase,

@@ -8,8 +8,9 @@ use bevy::{
 
 use super::{
     error::ClothError,
+    quantity::QuantityError,
     skin::ClothPaint,
-    surface::{Surface, TriangleMesh},
+    surface::{GrainError, Surface, TriangleMesh},
 };
 
 /// The direction of the warp on a mesh, for a [`ClothMaterial`](crate::cloth::ClothMaterial) with a
@@ -71,9 +72,9 @@ impl ClothGrain {
     /// Gives a surface this grain. `mesh` is the one that the surface was made from. A grid stays as it is.
     ///
     /// # Errors
-    /// [`ClothError::GrainAxis`] for an axis without a direction; [`ClothError::GrainNeedsUvs`] where there is neither an
-    /// axis nor a texture; [`ClothError::FoldedUvs`] for the first face without an area in the texture;
-    /// [`ClothError::Quantity`], [`ClothError::NoSuchPaint`] and [`ClothError::PaintCount`] of its turn.
+    /// [`GrainError::Axis`] for an axis without a direction; [`GrainError::NeedsUvs`] where there is neither an
+    /// axis nor a texture; [`GrainError::FoldedUvs`] for the first face without an area in the texture;
+    /// [`QuantityError`] and [`PaintError`](crate::cloth::PaintError) of its turn.
     pub fn apply(&self, surface: Surface, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
         if surface.as_grid().is_some() {
             return Ok(surface);
@@ -81,11 +82,11 @@ impl ClothGrain {
         let quantity = "turn of the grain (rad)";
         let turns = self.turn.values(&surface, quantity)?;
         for turn in &turns {
-            ClothError::check(*turn, f32::is_finite, quantity, "finite")?;
+            QuantityError::check(*turn, f32::is_finite, quantity, "finite")?;
         }
         let grain = match self.axis {
             Some(axis) => {
-                let direction = axis.try_normalize().ok_or(ClothError::GrainAxis { axis })?;
+                let direction = axis.try_normalize().ok_or(GrainError::Axis { axis })?;
                 surface.grain_along(direction)
             }
             None => surface.grain_of_texture(mesh)?,

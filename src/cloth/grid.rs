@@ -4,10 +4,11 @@ use bevy::{
     math::{Vec2, Vec3, Vec3Swizzles},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
+use thiserror::Error;
 
 use super::{
-    error::ClothError,
     limits::{FARTHEST, MAX_PARTICLES},
+    quantity::QuantityError,
 };
 
 /// The plane of a [`Cloth`](crate::cloth::Cloth) at rest, in its entity's frame.
@@ -65,9 +66,9 @@ impl GridShape {
     /// Returns the validated grid under a transform's `scale`.
     ///
     /// # Errors
-    /// [`ClothError::GridTooSmall`] or [`ClothError::GridTooLarge`]. [`ClothError::Quantity`] for a spacing that is not
+    /// [`GridError::TooSmall`] or [`GridError::TooLarge`]. [`GridError::Quantity`] for a spacing that is not
     /// positive, not finite, below 10⁻⁹ m, or that makes the cloth larger than 10¹² m.
-    pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
+    pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, GridError> {
         let Self {
             columns,
             rows,
@@ -76,10 +77,10 @@ impl GridShape {
             centred,
         } = *self;
         if columns < 2 || rows < 2 {
-            return Err(ClothError::GridTooSmall { columns, rows });
+            return Err(GridError::TooSmall { columns, rows });
         }
         let name = "spacing (m)";
-        ClothError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
+        QuantityError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
         let scaled = spacing
             * match plane {
                 ClothPlane::Hanging => scale.truncate(),
@@ -88,6 +89,36 @@ impl GridShape {
         let axes = plane.axes();
         ClothGrid::new([columns, rows], scaled, axes, scale, centred)
     }
+}
+
+/// The reason why a grid can't be built.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum GridError {
+    /// Fewer than two columns or rows.
+    #[error("a cloth needs at least 2 columns and 2 rows, not {columns} × {rows}")]
+    TooSmall {
+        /// Particles along the width.
+        columns: u32,
+        /// Particles along the height.
+        rows: u32,
+    },
+    /// More particles than [`MAX_PARTICLES`], or a product that overflows.
+    #[error("{columns} × {rows} particles exceed the maximum of {MAX_PARTICLES} for a cloth")]
+    TooLarge {
+        /// Particles along the width.
+        columns: u32,
+        /// Particles along the height.
+        rows: u32,
+    },
+    /// Rows and columns were requested of a cloth that was not made from a grid.
+    #[error("the cloth is a mesh, which has neither rows nor columns")]
+    NotAGrid,
+    /// Its spacing is out of range.
+    #[error(transparent)]
+    Quantity(#[from] QuantityError),
 }
 
 /// A validated grid. Springs, trees and meshes are built from it.
@@ -110,28 +141,28 @@ impl ClothGrid {
     /// A grid with this scaled spacing (m) along its axes.
     ///
     /// # Errors
-    /// [`ClothError::GridTooLarge`] or [`ClothError::Quantity`].
+    /// [`GridError::TooLarge`] or [`GridError::Quantity`].
     pub(super) fn new(
         [columns, rows]: [u32; 2],
         spacing: Vec2,
         axes: [Vec3; 2],
         scale: Vec3,
         centred: bool,
-    ) -> Result<Self, ClothError> {
+    ) -> Result<Self, GridError> {
         if (columns as usize)
             .checked_mul(rows as usize)
             .is_none_or(|count| count > MAX_PARTICLES)
         {
-            return Err(ClothError::GridTooLarge { columns, rows });
+            return Err(GridError::TooLarge { columns, rows });
         }
         let extent = spacing * Vec2::new(columns as f32, rows as f32);
         let measurable = |length: f32| (1.0e-9..FARTHEST).contains(&length.abs());
         if !(measurable(spacing.x) && measurable(spacing.y) && measurable(extent.length())) {
-            return Err(ClothError::Quantity {
+            return Err(GridError::Quantity(QuantityError {
                 quantity: "spacing × scale (m)",
                 expected: "at least 10⁻⁹, and the cloth smaller than 10¹² m",
                 value: spacing.abs().min_element(),
-            });
+            }));
         }
         let middle = Vec2::new(columns as f32 - 1.0, rows as f32 - 1.0) * spacing / 2.0;
         Ok(Self {
@@ -313,20 +344,20 @@ mod tests {
     fn refuses_what_cannot_be_built() {
         assert!(matches!(
             Cloth::new(1, 8, 0.1).grid(Vec3::ONE),
-            Err(ClothError::GridTooSmall {
+            Err(GridError::TooSmall {
                 columns: 1,
                 rows: 8
             })
         ));
         assert!(matches!(
             Cloth::new(u32::MAX, u32::MAX, 0.1).grid(Vec3::ONE),
-            Err(ClothError::GridTooLarge { .. })
+            Err(GridError::TooLarge { .. })
         ));
         for spacing in [0.0, -0.1, f32::NAN, f32::INFINITY, 1e-30, 1e30] {
             assert!(
                 matches!(
                     Cloth::new(8, 8, spacing).grid(Vec3::ONE),
-                    Err(ClothError::Quantity { .. })
+                    Err(GridError::Quantity(_))
                 ),
                 "spacing {spacing}"
             );

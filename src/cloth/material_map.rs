@@ -8,8 +8,13 @@ use bevy::{
 };
 
 use super::{
-    LANES, Lanes, error::ClothError, material::ClothMaterial, particles::DensityFactors,
-    skin::ClothPaint, springs::StiffnessFactors, surface::Surface,
+    LANES, Lanes,
+    material::ClothMaterial,
+    particles::DensityFactors,
+    quantity::QuantityError,
+    skin::{ClothPaint, PaintError},
+    springs::StiffnessFactors,
+    surface::Surface,
 };
 
 /// Scales a cloth's material, particle by particle: a stiff seam, an elastic waist, a hem that is wet and heavy. Without
@@ -95,22 +100,22 @@ impl ClothFactor {
     /// The factor of each particle; empty if it is 1 everywhere.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not in this range;
-    /// [`ClothError::NoSuchPaint`]; [`ClothError::PaintCount`].
+    /// [`PaintError::Quantity`] for the first that is not in this range;
+    /// [`PaintError::NoSuchChannel`]; [`PaintError::Count`].
     fn values(
         &self,
         surface: &Surface,
         quantity: &'static str,
         (range, is_in_range): Range,
-    ) -> Result<Vec<f32>, ClothError> {
+    ) -> Result<Vec<f32>, PaintError> {
         if self.is_one() {
             return Ok(Vec::new());
         }
         let mut factors = self.paint.values(surface, quantity)?;
-        ClothError::check(self.base, |base| base >= 0.0, quantity, "zero or more")?;
+        QuantityError::check(self.base, |base| base >= 0.0, quantity, "zero or more")?;
         for factor in &mut factors {
             *factor += self.base;
-            ClothError::check(*factor, is_in_range, quantity, range)?;
+            QuantityError::check(*factor, is_in_range, quantity, range)?;
         }
         Ok(factors)
     }
@@ -129,9 +134,9 @@ impl ClothMaterialMap {
     /// The factors of each particle.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is out of its range; [`ClothError::NoSuchPaint`];
-    /// [`ClothError::PaintCount`].
-    pub(crate) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, ClothError> {
+    /// [`PaintError::Quantity`] for the first that is out of its range; [`PaintError::NoSuchChannel`];
+    /// [`PaintError::Count`].
+    pub(crate) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, PaintError> {
         let positive: Range = ("positive and finite", |of| of > 0.0 && of.is_finite());
         let or_zero: Range = ("zero or more, and finite", |of| of >= 0.0 && of.is_finite());
         // All springs of a rope share one compliance, and it never has the surface of a mesh.

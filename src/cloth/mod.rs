@@ -15,6 +15,7 @@ mod particle_id;
 mod particles;
 mod pins;
 mod presence;
+mod quantity;
 mod recipe;
 mod rope;
 #[cfg(feature = "mesh")]
@@ -29,29 +30,36 @@ mod tearing;
 mod tears;
 
 pub(crate) use arrays::MapInline;
-pub use error::ClothError;
+pub use error::{
+    BoundsError, ClothError, SelfCollisionError, ShapeError, TargetError, TransformError,
+};
 pub use grain::ClothGrain;
 #[doc(hidden)]
 pub use grid::ClothGrid;
-pub use grid::{ClothPlane, GridShape};
+pub use grid::{ClothPlane, GridError, GridShape};
 pub use limits::MAX_PARTICLES;
 pub use material::{ClothMaterial, ClothStiffening, ClothWeft};
 pub use material_map::{ClothFactor, ClothMaterialMap};
 pub use particle_id::ParticleId;
-pub use particles::ClothParticles;
-pub use pins::{Corner, Pin, PinPredicate, Pins, RestPredicate};
+pub use particles::{ClothParticles, ParticleError};
+pub use pins::{Corner, Pin, PinError, PinPredicate, Pins, RestPredicate};
+pub use quantity::QuantityError;
 pub use recipe::{Cloth, ClothShape};
 pub use rope::{RopePath, RopeShape};
 #[cfg(feature = "mesh")]
 pub use rope_mesh::RopeError;
-pub use skin::{ClothBackstop, ClothPaint, ClothSkin, RestFunction};
+pub use skin::{ClothBackstop, ClothPaint, ClothSkin, PaintError, RestFunction, SkinError};
 #[doc(hidden)]
 pub use spring::{Spring, SpringKind};
+pub use springs::SpringError;
 #[doc(hidden)]
 pub use springs::Springs;
 #[doc(hidden)]
 pub use surface::SurfaceBinding;
-pub use surface::{MAX_MESH_PARTICLES, Spacing, Surface, TriangleMesh, VertexAttribute};
+pub use surface::{
+    GrainError, MAX_MESH_PARTICLES, MeshError, Spacing, Surface, TearError, TriangleMesh,
+    VertexAttribute,
+};
 pub use tearing::ClothTearing;
 pub use tears::ClothTears;
 

@@ -7,17 +7,21 @@ use bevy::{
     transform::components::Transform,
 };
 
-#[cfg(feature = "mesh")]
-use super::rope_mesh::{RopeError, path_of};
 use super::{
     error::ClothError,
-    grid::{ClothGrid, ClothPlane, GridShape},
+    grid::{ClothGrid, ClothPlane, GridError, GridShape},
     material::ClothMaterial,
     particles::ClothParticles,
     pins::Pins,
     presence::log_unsimulated,
+    quantity::QuantityError,
     rope::{RopePath, RopeShape},
     surface::{Surface, TriangleMesh},
+};
+#[cfg(feature = "mesh")]
+use super::{
+    rope_mesh::{RopeError, path_of},
+    surface::MeshError,
 };
 
 /// A cloth: a grid of particles, any triangle mesh, or a [`rope`](Self::rope).
@@ -122,8 +126,8 @@ impl ClothShape {
     /// As [`Cloth::surface`].
     pub(crate) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         match self {
-            Self::Grid(grid) => grid.scaled(scale).map(|grid| Surface::of_grid(&grid)),
-            Self::Rope(rope) => rope.scaled(scale).map(|grid| Surface::of_grid(&grid)),
+            Self::Grid(grid) => Ok(Surface::of_grid(&grid.scaled(scale)?)),
+            Self::Rope(rope) => Ok(Surface::of_grid(&rope.scaled(scale)?)),
             Self::RopePath(path) => path.surface(scale),
             Self::Triangles {
                 positions,
@@ -135,10 +139,10 @@ impl ClothShape {
                     triangles: triangles.clone(),
                     ..TriangleMesh::default()
                 };
-                Surface::of_mesh(&mesh, *weld, scale)
+                Ok(Surface::of_mesh(&mesh, *weld, scale)?)
             }
             #[cfg(feature = "mesh")]
-            Self::Mesh { .. } => Err(ClothError::MeshNotLoaded),
+            Self::Mesh { .. } => Err(MeshError::NotLoaded.into()),
         }
     }
 }
@@ -338,9 +342,9 @@ impl Cloth {
     /// Returns the validated grid under a transform's `scale`.
     ///
     /// # Errors
-    /// [`ClothError::NotAGrid`] for a mesh or a rope; otherwise those of [`GridShape::scaled`].
-    pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
-        let grid = self.as_grid().ok_or(ClothError::NotAGrid)?;
+    /// [`GridError::NotAGrid`] for a mesh or a rope; otherwise those of [`GridShape::scaled`].
+    pub fn grid(&self, scale: Vec3) -> Result<ClothGrid, GridError> {
+        let grid = self.as_grid().ok_or(GridError::NotAGrid)?;
         grid.scaled(scale)
     }
 
@@ -349,8 +353,8 @@ impl Cloth {
     ///
     /// # Errors
     /// - Those of [`grid`](Self::grid) and [`Surface::of_mesh`], and of [`RopeShape::scaled`] for a rope.
-    /// - [`ClothError::VertexNotFinite`] for a point of a rope's path that, scaled, is not finite or is beyond 10¹² m.
-    /// - [`ClothError::MeshNotLoaded`] for an asset.
+    /// - [`MeshError::VertexNotFinite`] for a point of a rope's path that, scaled, is not finite or is beyond 10¹² m.
+    /// - [`MeshError::NotLoaded`] for an asset.
     pub fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         self.shape.surface(scale)
     }
@@ -358,10 +362,10 @@ impl Cloth {
     /// Checks that the component's own values are in range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for an unevenness out of range.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for an unevenness out of range.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         let range = |u: f32| (0.0..=0.1).contains(&u);
-        ClothError::check(
+        QuantityError::check(
             self.unevenness,
             range,
             "unevenness (spacings)",
@@ -382,7 +386,7 @@ mod tests {
                 unevenness,
                 ..Cloth::default()
             };
-            assert!(matches!(cloth.validate(), Err(ClothError::Quantity { .. })));
+            assert!(cloth.validate().is_err());
         }
     }
 
@@ -390,7 +394,7 @@ mod tests {
     fn a_mesh_has_no_rows() {
         let kite = Cloth::triangles([Vec3::ZERO, Vec3::X, Vec3::Y], [[0, 1, 2]]);
         assert_eq!(kite.clone().lying().centred(), kite);
-        assert_eq!(kite.grid(Vec3::ONE), Err(ClothError::NotAGrid));
+        assert_eq!(kite.grid(Vec3::ONE), Err(GridError::NotAGrid));
         assert_eq!(kite.width(), 0.0);
         assert_eq!(kite.surface(Vec3::ONE).map(|surface| surface.len()), Ok(3));
     }

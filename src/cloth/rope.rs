@@ -7,9 +7,10 @@ use bevy::{
 
 use super::{
     error::ClothError,
-    grid::{ClothGrid, ClothPlane, mean},
+    grid::{ClothGrid, ClothPlane, GridError, mean},
     limits::{FARTHEST, MAX_PARTICLES},
-    surface::Surface,
+    quantity::QuantityError,
+    surface::{MeshError, Surface},
 };
 
 /// The shape of a rope, before the transform's scale.
@@ -49,17 +50,17 @@ impl RopeShape {
     /// Returns the validated grid under a transform's `scale`. Its radius grows with the mean scale of the axes.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for fewer than two particles, and for a spacing or radius that is not positive and finite, below
-    /// 10⁻⁹ m, or makes the rope longer than 10¹² m. [`ClothError::GridTooLarge`] for too many particles.
-    pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, ClothError> {
+    /// [`GridError::Quantity`] for fewer than two particles, and for a spacing or radius that is not positive and finite, below
+    /// 10⁻⁹ m, or makes the rope longer than 10¹² m. [`GridError::TooLarge`] for too many particles.
+    pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, GridError> {
         let count = self.particles as f32;
-        ClothError::check(count, |n| n >= 2.0, "particles of a rope", "at least 2")?;
+        QuantityError::check(count, |n| n >= 2.0, "particles of a rope", "at least 2")?;
         let is_length = |length: f32| length > 0.0 && length.is_finite();
         for (length, name) in [
             (self.spacing, "spacing of a rope (m)"),
             (self.radius, "radius of a rope (m)"),
         ] {
-            ClothError::check(length, is_length, name, "positive and finite")?;
+            QuantityError::check(length, is_length, name, "positive and finite")?;
         }
         let (axes, along) = match self.plane {
             ClothPlane::Hanging => ([Vec3::NEG_Y, Vec3::NEG_X], scale.y),
@@ -107,19 +108,19 @@ impl RopePath {
     /// The surface under a transform's `scale`.
     ///
     /// # Errors
-    /// - [`ClothError::VertexNotFinite`] for the first point that, scaled, is not finite or is beyond 10¹² m.
-    /// - [`ClothError::Quantity`] for fewer than two points.
-    /// - [`ClothError::Quantity`] for a length, spacing or radius that is not positive and finite, or is too small or large once scaled.
-    /// - [`ClothError::GridTooLarge`] for too many particles.
+    /// - [`MeshError::VertexNotFinite`] for the first point that, scaled, is not finite or is beyond 10¹² m.
+    /// - [`QuantityError`] for fewer than two points.
+    /// - [`QuantityError`] for a length, spacing or radius that is not positive and finite, or is too small or large once scaled.
+    /// - [`GridError::TooLarge`] for too many particles.
     pub(super) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         let count = self.points.len() as f32;
-        ClothError::check(count, |n| n >= 2.0, "points of a rope's path", "at least 2")?;
+        QuantityError::check(count, |n| n >= 2.0, "points of a rope's path", "at least 2")?;
         let points: Vec<Vec3> = self.points.iter().map(|point| scale * *point).collect();
         // Not so for NaN.
         let is_near = |point: &Vec3| point.abs().max_element() < FARTHEST && point.is_finite();
         if let Some(vertex) = points.iter().position(|point| !is_near(point)) {
             let position = points[vertex];
-            return Err(ClothError::VertexNotFinite { vertex, position });
+            return Err(MeshError::VertexNotFinite { vertex, position }.into());
         }
         let unscaled = along(&self.points).1;
         let is_length = |length: f32| length > 0.0 && length.is_finite();
@@ -128,7 +129,7 @@ impl RopePath {
             (self.radius, "radius of a rope (m)"),
             (unscaled, "length of a rope's path (m)"),
         ] {
-            ClothError::check(length, is_length, name, "positive and finite")?;
+            QuantityError::check(length, is_length, name, "positive and finite")?;
         }
         let parts = (unscaled / self.spacing).round();
         let parts = parts.clamp(1.0, MAX_PARTICLES as f32) as u32;
@@ -250,24 +251,31 @@ mod tests {
             let rope = Cloth::rope_along(points.iter().copied(), spacing, 0.01);
             rope.surface(Vec3::ONE).expect_err("no rope")
         };
-        let is_quantity = |error| matches!(error, ClothError::Quantity { .. });
+        let is_quantity = |error: ClothError| error.quantity().is_some();
         assert!(is_quantity(refused(&[], 0.1)));
         assert!(is_quantity(refused(&[Vec3::ONE], 0.1)));
         assert!(is_quantity(refused(&[Vec3::ONE; 3], 0.1)));
         assert!(is_quantity(refused(&[Vec3::ZERO, Vec3::X], f32::NAN)));
         for far in [f32::NAN, f32::INFINITY, 1.0e13, -1.0e18] {
             let error = refused(&[Vec3::ZERO, Vec3::Y * far], 0.1);
-            let is_named = matches!(error, ClothError::VertexNotFinite { vertex: 1, .. });
+            let is_named = matches!(
+                error,
+                ClothError::Mesh(MeshError::VertexNotFinite { vertex: 1, .. })
+            );
             assert!(is_named, "{error}");
         }
         let error = refused(&[Vec3::ZERO, Vec3::X], 1.0e-8);
-        assert!(matches!(error, ClothError::GridTooLarge { .. }), "{error}");
+        assert!(
+            matches!(error, ClothError::Grid(GridError::TooLarge { .. })),
+            "{error}"
+        );
     }
 
     #[test]
     fn refuses_what_is_no_rope() {
         let refused = |rope: Cloth| rope.surface(Vec3::ONE).err();
-        let is_quantity = |error| matches!(error, Some(ClothError::Quantity { .. }));
+        let is_quantity =
+            |error: Option<ClothError>| error.is_some_and(|error| error.quantity().is_some());
         for particles in [0, 1] {
             assert!(is_quantity(refused(Cloth::rope(particles, 0.1, 0.01))));
         }
@@ -282,6 +290,9 @@ mod tests {
             );
         }
         let many = refused(Cloth::rope(u32::MAX, 0.1, 0.01));
-        assert!(matches!(many, Some(ClothError::GridTooLarge { .. })));
+        assert!(matches!(
+            many,
+            Some(ClothError::Grid(GridError::TooLarge { .. }))
+        ));
     }
 }

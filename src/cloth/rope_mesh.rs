@@ -7,9 +7,8 @@ use bevy::{
 use thiserror::Error;
 
 use super::{
-    error::ClothError,
     lines::edge_lines,
-    surface::{indices_of_asset, positions_of_asset},
+    surface::{MeshError, indices_of_asset, positions_of_asset},
 };
 
 /// The reason why [`Cloth::rope_of`](crate::cloth::Cloth::rope_of) makes no rope of a mesh.
@@ -48,7 +47,7 @@ pub enum RopeError {
     },
     /// The mesh can't be read, or has no positions.
     #[error(transparent)]
-    Mesh(#[from] ClothError),
+    Mesh(#[from] MeshError),
 }
 
 /// The places along the edges of a mesh of lines, from the end with the lower index.

@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use super::{
-    error::ClothError, material::ClothMaterial, particles::ClothParticles,
+    material::ClothMaterial, particles::ClothParticles, quantity::QuantityError,
     springs::StiffnessFactors, stress::Stress, surface::Surface, tears::ClothTears,
 };
 use crate::cloth::arrays::MapInline;
@@ -65,11 +65,11 @@ impl ClothTearing {
     /// Checks that the strengths are positive, and that the material stretches.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`].
-    pub fn validate(&self, material: &ClothMaterial) -> Result<(), ClothError> {
+    /// [`QuantityError`].
+    pub fn validate(&self, material: &ClothMaterial) -> Result<(), QuantityError> {
         let is_positive = |value: f32| value > 0.0;
         for strength in [self.strength, self.weft_strength] {
-            ClothError::check(
+            QuantityError::check(
                 strength,
                 is_positive,
                 "strength of a cloth that tears (N/m)",
@@ -78,7 +78,7 @@ impl ClothTearing {
         }
         for compliance in material.stretch_compliances() {
             let quantity = "stretch compliance of a cloth that tears (m/N)";
-            ClothError::check(compliance, is_positive, quantity, "positive")?;
+            QuantityError::check(compliance, is_positive, quantity, "positive")?;
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ use super::surface::Surface;
 /// sleeps by itself. Scenes hold this component, and snapshots do, too.
 ///
 /// To mend a cloth, empty it: `*tears = ClothTears::default()`. Edges that the cloth does not have are a fault,
-/// [`NoSuchEdge`](crate::cloth::ClothError::NoSuchEdge). So empty it when you give the entity another `Cloth`.
+/// [`NoSuchEdge`](crate::cloth::TearError::NoSuchEdge). So empty it when you give the entity another `Cloth`.
 ///
 /// ```
 /// use bevy_drape::prelude::*;

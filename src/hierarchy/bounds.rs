@@ -7,7 +7,7 @@ use super::{
     tree::{QuadTree, Volumes, each},
     volume::{BoundingVolume, NodeVolume},
 };
-use crate::cloth::{ClothError, ClothParticles};
+use crate::cloth::{BoundsError, ClothParticles};
 
 /// The bounding volumes of a tree's nodes, with a volume type and a rule chosen at run time.
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
@@ -25,14 +25,14 @@ impl NodeBounds {
     /// ([`Stretch::bound`](crate::solver::Stretch)).
     ///
     /// # Errors
-    /// [`ClothError::NoSuchBounds`] if the volume does not support the rule. Nothing changes then.
+    /// [`BoundsError::Unsupported`] if the volume does not support the rule. Nothing changes then.
     pub fn rebuild(
         &mut self,
         (volume, rule): (BoundingVolume, BoundRule),
         tree: &QuadTree,
         particles: &ClothParticles,
         stretch: f32,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), BoundsError> {
         rule.check(volume)?;
         if self.volume() != volume {
             self.volumes = Volumes::of(volume);

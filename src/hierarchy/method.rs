@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::{rule::BoundRule, volume::BoundingVolume};
-use crate::cloth::ClothError;
+use crate::cloth::BoundsError;
 
 /// A cloth with fewer particles is scanned. At 64 × 64, a scan of all particles, eight at a time, takes as long as the
 /// search of the tree (`cargo bench --profile dev --bench hierarchy`).
@@ -87,8 +87,8 @@ impl SearchMethod {
     /// Checks that the method exists.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchBounds`] if the volume does not support the rule.
-    pub fn validate(self) -> Result<(), ClothError> {
+    /// [`BoundsError::Unsupported`] if the volume does not support the rule.
+    pub fn validate(self) -> Result<(), BoundsError> {
         match self {
             Self::Tree(volume, rule) => rule.check(volume),
             Self::Auto | Self::Scan => Ok(()),
@@ -192,7 +192,7 @@ mod tests {
         let none = SearchMethod::Tree(BoundingVolume::Obb, BoundRule::RestShape);
         assert!(matches!(
             none.validate(),
-            Err(ClothError::NoSuchBounds { .. })
+            Err(BoundsError::Unsupported { .. })
         ));
     }
 }

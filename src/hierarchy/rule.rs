@@ -3,7 +3,7 @@
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 use super::volume::BoundingVolume;
-use crate::cloth::ClothError;
+use crate::cloth::BoundsError;
 
 /// The rule that defines the bounding volumes of a tree's nodes.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq, Hash)]
@@ -45,12 +45,12 @@ impl BoundRule {
     }
 
     /// # Errors
-    /// [`ClothError::NoSuchBounds`] if the volume does not support the rule.
-    pub(super) fn check(self, volume: BoundingVolume) -> Result<(), ClothError> {
+    /// [`BoundsError::Unsupported`] if the volume does not support the rule.
+    pub(super) fn check(self, volume: BoundingVolume) -> Result<(), BoundsError> {
         if self.matches(volume) {
             return Ok(());
         }
-        Err(ClothError::NoSuchBounds {
+        Err(BoundsError::Unsupported {
             volume: volume.name(),
             rule: self.name(),
         })

@@ -20,7 +20,7 @@ use bevy::{
 };
 
 use super::naming::quoted;
-use crate::cloth::ClothError;
+use crate::cloth::{ClothError, TransformError};
 
 /// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
 pub(crate) fn global_transform(
@@ -34,9 +34,9 @@ pub(crate) fn global_transform(
 pub(crate) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
     let affine: Affine3A = transform.into();
     let [x, y, z] = [0, 1, 2].map(|axis| affine.matrix3.col(axis));
-    ClothError::Transform {
+    ClothError::Transform(TransformError::Unusable {
         transform: format!("at {}, axes {x}, {y} and {z}", affine.translation),
-    }
+    })
 }
 
 /// Global transforms as of now, including those below a disabled entity, since disabling an entity does not disable its
@@ -52,8 +52,8 @@ impl Places<'_, '_> {
     /// An entity's global transform.
     ///
     /// # Errors
-    /// [`ClothError::NoTransform`] if it or an ancestor has none.
-    pub fn of(&self, entity: Entity) -> Result<GlobalTransform, ClothError> {
+    /// [`TransformError::Missing`] if it or an ancestor has none.
+    pub fn of(&self, entity: Entity) -> Result<GlobalTransform, TransformError> {
         let mut place = GlobalTransform::from(self.own(entity, "")?);
         for (index, above) in self.parents.iter_ancestors(entity).enumerate() {
             let kinship = if index == 0 {
@@ -66,9 +66,9 @@ impl Places<'_, '_> {
         Ok(place)
     }
 
-    fn own(&self, entity: Entity, kinship: &str) -> Result<Transform, ClothError> {
+    fn own(&self, entity: Entity, kinship: &str) -> Result<Transform, TransformError> {
         let transform = self.transforms.get(entity).copied();
-        transform.map_err(|_| ClothError::NoTransform {
+        transform.map_err(|_| TransformError::Missing {
             entity,
             name: format!("{kinship}{}", quoted(entity, self.names.get(entity).ok())),
         })
@@ -90,7 +90,7 @@ impl ClothFrame {
     /// The frame of a global transform, and its scale.
     ///
     /// # Errors
-    /// [`ClothError::Transform`] for one that is not finite or that cannot be inverted.
+    /// [`TransformError::Unusable`] for one that is not finite or that cannot be inverted.
     pub(crate) fn of(transform: &GlobalTransform) -> Result<(Self, Vec3), ClothError> {
         let affine = transform.affine();
         let (scale, rotation, translation) = affine.to_scale_rotation_translation();

@@ -10,7 +10,7 @@ use super::{
     step::TimeOrder,
     substepping::{MAX_SUBSTEPS, Substepping},
 };
-use crate::cloth::ClothError;
+use crate::cloth::QuantityError;
 
 /// Settings of a cloth's simulation. They may change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
@@ -80,8 +80,8 @@ impl ClothSettings {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is not.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is not.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         let substeps = match self.substepping {
             Substepping::Automatic => 1,
             Substepping::Fixed(substeps) => substeps,
@@ -89,7 +89,7 @@ impl ClothSettings {
                 stretch,
                 max_substeps,
             } => {
-                ClothError::check(
+                QuantityError::check(
                     stretch,
                     |v| v > 0.0 && v.is_finite(),
                     "tolerance of stretch",
@@ -98,20 +98,20 @@ impl ClothSettings {
                 max_substeps
             }
         };
-        ClothError::check(
+        QuantityError::check(
             substeps as f32,
             |v| (1.0..=MAX_SUBSTEPS as f32).contains(&v),
             "sub-steps",
             "from 1 to 10,000",
         )?;
-        ClothError::check(
+        QuantityError::check(
             self.particle_radius,
             |v| v >= 0.0 && v.is_finite(),
             "particle radius (m)",
             "zero or more, and finite",
         )?;
         for value in self.gravity.unwrap_or(Vec3::ZERO).to_array() {
-            ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
+            QuantityError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
         }
         Ok(())
     }

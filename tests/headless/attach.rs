@@ -101,10 +101,10 @@ fn a_target_that_is_gone_is_named() {
     app.world_mut().despawn(pole);
     tick(&mut app, 3);
     let fault = app.world().get::<ClothFault>(flag).expect("a fault");
-    let expected = ClothError::NoTarget {
+    let expected = ClothError::Target(TargetError::NoTarget {
         pin: format!("{:?}", Pin::Column(0)),
         target: pole,
-    };
+    });
     assert_eq!(fault.error, expected);
     assert!(fault.error.to_string().contains(&pole.to_string()));
     let before = particles(&app, flag).clone();
@@ -125,7 +125,10 @@ fn a_target_that_is_gone_is_named() {
     app.world_mut().entity_mut(flag).insert(outside);
     tick(&mut app, 1);
     let fault = app.world().get::<ClothFault>(flag).expect("a fault");
-    assert!(matches!(fault.error, ClothError::PinOutOfRange { .. }));
+    assert!(matches!(
+        fault.error,
+        ClothError::Pin(PinError::OutOfRange { .. })
+    ));
 }
 
 /// A cloth that is built again is attached again, where it then is.

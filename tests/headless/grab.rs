@@ -476,14 +476,14 @@ fn bad_hands_have_faults() {
     tick(&mut app, 2);
     for alone in [child, cloth] {
         let fault = app.world().get::<ClothFault>(alone).expect("a fault");
-        assert_eq!(fault.error, ClothError::HandNotAlone);
+        assert_eq!(fault.error, TargetError::HandNotAlone.into());
     }
     assert!(!pinned(&app, cloth).contains(&55));
     let hand = app.world_mut().spawn(ClothGrab::default()).id();
     tick(&mut app, 2);
     let fault = app.world().get::<ClothFault>(hand).expect("a fault");
     let cloth = Entity::PLACEHOLDER;
-    assert_eq!(fault.error, ClothError::NoSuchCloth { cloth });
+    assert_eq!(fault.error, TargetError::NoSuchCloth { cloth }.into());
     let cloth = app.world_mut().spawn(Cloth::new(4, 4, 0.1)).id();
     change::<ClothGrab>(&mut app, hand, |grab| grab.cloth = cloth);
     tick(&mut app, 2);

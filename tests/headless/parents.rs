@@ -174,7 +174,10 @@ fn a_collider_without_a_transform_is_named() {
     app.world_mut().entity_mut(ball).remove::<Transform>();
     tick(&mut app, 1);
     let fault = app.world().get::<ClothFault>(ball).expect("a fault");
-    assert!(matches!(fault.error, ClothError::NoTransform { .. }));
+    assert!(matches!(
+        fault.error,
+        ClothError::Transform(TransformError::Missing { .. })
+    ));
     assert_eq!(stats(&app, cloth).contacts, 0);
     app.world_mut().entity_mut(ball).insert(place);
     tick(&mut app, 1);

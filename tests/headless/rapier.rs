@@ -179,7 +179,7 @@ fn what_has_no_surface_is_named_and_left_out() {
     tick(&mut app, 5);
     let fault = app.world().get::<ClothFault>(line).expect("a fault");
     assert!(
-        matches!(&fault.error, ClothError::NoSuchShape { shape } if shape == "Polyline"),
+        matches!(&fault.error, ClothError::Shape(ShapeError::NoSuchShape { shape }) if shape == "Polyline"),
         "{fault:?}"
     );
     let touched = |app: &App| {

@@ -211,10 +211,14 @@ fn what_is_wrong_is_named() {
     for (mesh, is_expected) in [
         (
             renderers,
-            (|error| matches!(error, ClothError::MeshNotReadable)) as fn(ClothError) -> bool,
+            (|error| matches!(error, ClothError::Mesh(MeshError::NotReadable)))
+                as fn(ClothError) -> bool,
         ),
         (nowhere, |error| {
-            matches!(error, ClothError::VertexNotFinite { vertex: 7, .. })
+            matches!(
+                error,
+                ClothError::Mesh(MeshError::VertexNotFinite { vertex: 7, .. })
+            )
         }),
     ] {
         let bad = add(&mut app, mesh);
@@ -233,11 +237,17 @@ fn what_is_wrong_is_named() {
     let far = app.world_mut().spawn(far).id();
     tick(&mut app, 2);
     let error = fault(&app, far).expect("a fault");
-    assert!(matches!(error, ClothError::BoundTooFar { .. }), "{error}");
+    assert!(
+        matches!(error, ClothError::Mesh(MeshError::BoundTooFar { .. })),
+        "{error}"
+    );
 
     app.world_mut().despawn(cloth);
     tick(&mut app, 2);
-    assert_eq!(fault(&app, fine), Some(ClothError::NoSuchCloth { cloth }));
+    assert_eq!(
+        fault(&app, fine),
+        Some(ClothError::Target(TargetError::NoSuchCloth { cloth }))
+    );
     app.world_mut().entity_mut(fine).remove::<ClothRenderMesh>();
     tick(&mut app, 1);
     assert_eq!(fault(&app, fine), None);

@@ -591,7 +591,7 @@ fn edges_of_a_mesh_are_a_rope() {
     let empty = Mesh::new(PrimitiveTopology::LineList, default());
     assert_eq!(
         points(&empty),
-        Err(RopeError::Mesh(ClothError::MeshWithoutPositions))
+        Err(RopeError::Mesh(MeshError::WithoutPositions))
     );
     let none: Vec<Vec3> = Vec::new();
     let none = empty.with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, none);

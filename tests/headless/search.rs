@@ -27,7 +27,7 @@ fn a_search_that_does_not_exist_is_named() {
         |_, _| {},
         |error| {
             let text = error.to_string();
-            matches!(error, ClothError::NoSuchBounds { .. })
+            matches!(error, ClothError::Bounds(BoundsError::Unsupported { .. }))
                 && text.contains("OBB")
                 && text.contains("rest shape")
         },

@@ -168,11 +168,16 @@ fn bad_thickness_is_told_and_others_go_on() {
         let error = fault.map(|fault| fault.error.clone());
         match thickness {
             0.0201 => assert!(
-                matches!(error, Some(ClothError::TooThick { .. })),
+                matches!(
+                    error,
+                    Some(ClothError::SelfCollision(
+                        SelfCollisionError::TooThick { .. }
+                    ))
+                ),
                 "{error:?}"
             ),
             _ => assert!(
-                matches!(error, Some(ClothError::Quantity { .. })),
+                matches!(error, Some(ClothError::Quantity(_))),
                 "{thickness} {friction} {error:?}"
             ),
         }

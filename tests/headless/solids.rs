@@ -318,7 +318,7 @@ fn a_mesh_is_a_collider() {
         let entity = app.world_mut().spawn(entity).id();
         tick(&mut app, 2);
         let fault = app.world().get::<ClothFault>(entity).expect("a fault");
-        assert_eq!(fault.error, ClothError::MeshNotLoaded);
+        assert_eq!(fault.error, MeshError::NotLoaded.into());
         // A box whose faces have vertices of their own, as those of Bevy have.
         let size = Vec3::new(0.6, 0.4, 0.6);
         let mesh = Mesh::from(Cuboid::from_size(size));
@@ -345,7 +345,7 @@ fn a_mesh_is_a_collider() {
             .world()
             .get::<ClothFault>(entity)
             .map(|fault| fault.error.clone());
-        let flat = ClothError::FlatHull { points: 4 };
+        let flat = ClothError::Shape(ShapeError::FlatHull { points: 4 });
         assert_eq!(fault, is_hull.then_some(flat));
     }
 }

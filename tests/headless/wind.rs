@@ -267,7 +267,7 @@ fn pressure_needs_a_closed_mesh() {
         app.world_mut().entity_mut(cloth).insert(pressure);
         tick(&mut app, 1);
         let fault = app.world().get::<ClothFault>(cloth).expect("a fault");
-        assert_eq!(fault.error, ClothError::NotClosed);
+        assert_eq!(fault.error, MeshError::NotClosed.into());
         app.world_mut().entity_mut(cloth).remove::<ClothPressure>();
         tick(&mut app, 1);
         assert!(app.world().get::<ClothFault>(cloth).is_none());

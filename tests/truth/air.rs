@@ -24,16 +24,11 @@ struct Scene {
 impl Scene {
     fn new(side: u32, is_grid: bool, material: &ClothMaterial, turn: Quat, substeps: u32) -> Self {
         let spacing = 0.8 / (side - 1) as f32;
-        let mesh = if is_grid {
-            None
+        let surface = if is_grid {
+            Cloth::new(side, side, spacing).surface(Vec3::ONE)
         } else {
-            Some(meshes::irregular(0.8, 0.8, spacing, 0.3))
-        };
-        let surface = match mesh {
-            Some(mesh) => Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE),
-            None => Cloth::new(side, side, spacing)
-                .grid(Vec3::ONE)
-                .map(|grid| Surface::of_grid(&grid)),
+            let mesh = meshes::irregular(0.8, 0.8, spacing, 0.3);
+            Surface::of_mesh(&mesh, 1.0e-5, Vec3::ONE).map_err(Into::into)
         };
         let surface = surface.expect("a surface");
         let mut particles = ClothParticles::at_rest(&surface, material).expect("a valid material");

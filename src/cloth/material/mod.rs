@@ -8,7 +8,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::error::ClothError;
+use crate::cloth::quantity::QuantityError;
 pub use stiffening::ClothStiffening;
 
 /// The material of a cloth. May change at any time.
@@ -103,9 +103,9 @@ impl ClothMaterial {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is out of range.
-    pub fn validate(&self) -> Result<(), ClothError> {
-        let check = ClothError::check;
+    /// [`QuantityError`] for the first value that is out of range.
+    pub fn validate(&self) -> Result<(), QuantityError> {
+        let check = QuantityError::check;
         let finite = |v: f32| v >= 0.0 && v.is_finite();
         let not_negative = |v: f32| v >= 0.0;
         check(

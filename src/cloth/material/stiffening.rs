@@ -2,7 +2,7 @@
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-use crate::cloth::error::ClothError;
+use crate::cloth::quantity::QuantityError;
 
 /// A knit gives easily until its loops are straight, and its yarns take over. Beyond a strain, cloth that stiffens is stiffer against
 /// stretch and shear, by a factor. Force over strain is a line with a knee:
@@ -44,15 +44,15 @@ impl ClothStiffening {
     /// Checks that both values are in their ranges.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is not.
-    pub(super) fn validate(&self) -> Result<(), ClothError> {
-        ClothError::check(
+    /// [`QuantityError`] for the first that is not.
+    pub(super) fn validate(&self) -> Result<(), QuantityError> {
+        QuantityError::check(
             self.strain,
             |strain| strain > 0.0 && strain <= 10.0,
             "strain beyond which the cloth stiffens",
             "positive, and at most 10",
         )?;
-        ClothError::check(
+        QuantityError::check(
             self.factor,
             |factor| factor >= 1.0 && factor.is_finite(),
             "factor by which the cloth stiffens",

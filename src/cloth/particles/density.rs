@@ -1,6 +1,6 @@
 //! The masses that a material gives to particles.
 
-use crate::cloth::{error::ClothError, material::ClothMaterial, surface::Surface};
+use crate::cloth::{material::ClothMaterial, quantity::QuantityError, surface::Surface};
 
 /// Factors of a cloth's areal density.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,13 +55,13 @@ impl DensityFactors {
     ///
     /// # Errors
     /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
-    pub fn check(&self, surface: &Surface, material: &ClothMaterial) -> Result<(), ClothError> {
+    pub fn check(&self, surface: &Surface, material: &ClothMaterial) -> Result<(), QuantityError> {
         let masses = (0..surface.len()).map(|index| self.mass(index, surface, material));
         let ends = masses.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], mass| {
             [least.min(mass), most.max(mass)]
         });
         for mass in ends {
-            ClothError::check(
+            QuantityError::check(
                 mass,
                 |mass| (1.0e-15..1.0e15).contains(&mass),
                 "the mass of a particle (kg)",

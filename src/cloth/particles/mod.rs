@@ -2,6 +2,7 @@
 
 mod body;
 mod density;
+mod error;
 mod extent;
 mod load;
 mod loads;
@@ -19,13 +20,15 @@ use bevy::{
 };
 
 use super::{
-    error::ClothError,
     lanes::{Block, LANES, Layout, Slot, W},
     material::ClothMaterial,
     particle_id::ParticleId,
     pins::Pins,
+    quantity::QuantityError,
     surface::Surface,
 };
+
+pub use error::ParticleError;
 
 pub(crate) use density::DensityFactors;
 pub(crate) use load::Load;
@@ -80,8 +83,8 @@ impl ClothParticles {
     /// The particles of a surface at rest, all free, with masses from `material`.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
-    pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, ClothError> {
+    /// [`QuantityError`] for a particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
+    pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, QuantityError> {
         let mut particles = Self::of_layout(surface.layout());
         for (&position, slot) in surface
             .rest_positions()
@@ -102,11 +105,11 @@ impl ClothParticles {
     /// next tick: the particle at (row, column) is number `row × columns + column`.
     ///
     /// # Errors
-    /// [`ClothError::InverseMassCount`] if the two slices differ in length; [`ClothError::ParticleNotFinite`] for the
+    /// [`ParticleError::InverseMassCount`] if the two slices differ in length; [`ParticleError::NotFinite`] for the
     /// first invalid particle.
-    pub fn new(positions: &[Vec3], inverse_masses: &[f32]) -> Result<Self, ClothError> {
+    pub fn new(positions: &[Vec3], inverse_masses: &[f32]) -> Result<Self, ParticleError> {
         if positions.len() != inverse_masses.len() {
-            return Err(ClothError::InverseMassCount {
+            return Err(ParticleError::InverseMassCount {
                 positions: positions.len(),
                 inverse_masses: inverse_masses.len(),
             });
@@ -267,12 +270,12 @@ impl ClothParticles {
     /// position.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchParticle`].
+    /// [`ParticleError::NoSuchParticle`].
     pub fn set_position(
         &mut self,
         id: impl Into<ParticleId>,
         position: Vec3,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), ParticleError> {
         let Slot { block, lane } = self.existing(id.into())?;
         self.blocks[block].set_position(lane, position);
         self.past.forget(AFTER_A_JUMP);
@@ -282,12 +285,12 @@ impl ClothParticles {
     /// Sets position − previous position (m), over one sub-step. A pinned particle ignores it.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchParticle`].
+    /// [`ParticleError::NoSuchParticle`].
     pub fn set_displacement(
         &mut self,
         id: impl Into<ParticleId>,
         displacement: Vec3,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), ParticleError> {
         let Slot { block, lane } = self.existing(id.into())?;
         self.blocks[block].set_displacement(lane, displacement);
         self.past.forget(0);
@@ -297,12 +300,12 @@ impl ClothParticles {
     /// Sets the velocity (m/s). A pinned particle ignores it.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchParticle`].
+    /// [`ParticleError::NoSuchParticle`].
     pub fn set_velocity(
         &mut self,
         id: impl Into<ParticleId>,
         velocity: Vec3,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), ParticleError> {
         let substep = self.substep;
         self.set_displacement(id, velocity * substep)
     }
@@ -310,12 +313,12 @@ impl ClothParticles {
     /// Sets the inverse mass (1/kg); 0 pins the particle. Lasts until the material or the pins change.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchParticle`].
+    /// [`ParticleError::NoSuchParticle`].
     pub fn set_inverse_mass(
         &mut self,
         id: impl Into<ParticleId>,
         inverse_mass: f32,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), ParticleError> {
         let Slot { block, lane } = self.existing(id.into())?;
         self.blocks[block].set_inverse_mass(lane, inverse_mass);
         self.past.forget(AFTER_A_JUMP);
@@ -348,8 +351,8 @@ impl ClothParticles {
     /// Checks that every number is finite, no length exceeds 10¹⁸ m, and each inverse mass is from 0 to 10¹⁵ 1/kg.
     ///
     /// # Errors
-    /// [`ClothError::ParticleNotFinite`] for the first invalid particle.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`ParticleError::NotFinite`] for the first invalid particle.
+    pub fn validate(&self) -> Result<(), ParticleError> {
         if self.survey().is_valid {
             return Ok(());
         }
@@ -368,7 +371,7 @@ impl ClothParticles {
             return Ok(());
         };
         let block = &self.blocks[slot.block];
-        Err(ClothError::ParticleNotFinite {
+        Err(ParticleError::NotFinite {
             index,
             position: block.position(slot.lane),
             displacement: block.displacement(slot.lane),
@@ -385,8 +388,8 @@ impl ClothParticles {
         self.index(id).map(|index| self.layout.slot_of(index))
     }
 
-    fn existing(&self, id: ParticleId) -> Result<Slot, ClothError> {
-        self.slot(id).ok_or(ClothError::NoSuchParticle {
+    fn existing(&self, id: ParticleId) -> Result<Slot, ParticleError> {
+        self.slot(id).ok_or(ParticleError::NoSuchParticle {
             id,
             columns: self.columns(),
             rows: self.rows(),

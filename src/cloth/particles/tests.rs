@@ -25,7 +25,7 @@ fn index_and_cell_name_the_same_particle() {
     );
     assert!(matches!(
         particles.set_position((3, 0), Vec3::ZERO),
-        Err(ClothError::NoSuchParticle { rows: 3, .. })
+        Err(ParticleError::NoSuchParticle { rows: 3, .. })
     ));
 }
 
@@ -56,7 +56,7 @@ fn each_number_that_is_not_finite_is_found() {
             .expect("it exists");
         assert!(matches!(
             particles.validate(),
-            Err(ClothError::ParticleNotFinite { index: 7, .. })
+            Err(ParticleError::NotFinite { index: 7, .. })
         ));
         let mut particles = self::particles();
         particles
@@ -64,7 +64,7 @@ fn each_number_that_is_not_finite_is_found() {
             .expect("it exists");
         assert!(matches!(
             particles.validate(),
-            Err(ClothError::ParticleNotFinite { index: 11, .. })
+            Err(ParticleError::NotFinite { index: 11, .. })
         ));
     }
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0] {
@@ -72,7 +72,7 @@ fn each_number_that_is_not_finite_is_found() {
         particles.set_inverse_mass(0, bad).expect("it exists");
         assert!(matches!(
             particles.validate(),
-            Err(ClothError::ParticleNotFinite { index: 0, .. })
+            Err(ParticleError::NotFinite { index: 0, .. })
         ));
     }
     assert_eq!(particles().validate(), Ok(()));

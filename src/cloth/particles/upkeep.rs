@@ -9,10 +9,10 @@ use super::{
 };
 use crate::cloth::{
     arrays::MapInline,
-    error::ClothError,
     lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X},
     material::ClothMaterial,
     pins::Pins,
+    quantity::QuantityError,
     surface::Surface,
 };
 
@@ -26,18 +26,18 @@ pub(crate) struct Survey {
 }
 
 impl ClothParticles {
-    /// Sets the inverse masses from the surface's areas, the material's density times these factors, and the pins.
+    /// Sets the inverse masses from the surface's areas, the material's density times these factors, and the pins, which must be valid
+    /// for the surface.
     ///
     /// # Errors
-    /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg; a pin that names no particle. Nothing changes then.
+    /// A particle mass outside 10⁻¹⁵ to 10¹⁵ kg. Nothing changes then.
     pub(crate) fn assign_masses(
         &mut self,
         surface: &Surface,
         material: &ClothMaterial,
         factors: &DensityFactors,
         pins: &Pins,
-    ) -> Result<(), ClothError> {
-        pins.validate(surface)?;
+    ) -> Result<(), QuantityError> {
         factors.check(surface, material)?;
         for (index, slot) in self.layout.slots().enumerate() {
             let mass = factors.mass(index, surface, material);
@@ -57,7 +57,7 @@ impl ClothParticles {
         surface: &Surface,
         material: &ClothMaterial,
         factors: &DensityFactors,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), QuantityError> {
         factors.check(surface, material)?;
         for (index, slot) in self.layout.slots().enumerate() {
             let block = &mut self.blocks[slot.block];

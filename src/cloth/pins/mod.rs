@@ -7,8 +7,9 @@ use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
+use thiserror::Error;
 
-use super::{error::ClothError, surface::Surface};
+use super::surface::Surface;
 
 pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
 
@@ -33,6 +34,44 @@ pub use pin::{Corner, Pin, PinPredicate, RestPredicate};
 #[type_path = "bevy_drape"]
 #[reflect(Component, Default, Debug, Clone, PartialEq)]
 pub struct Pins(Vec<Pin>);
+
+/// The reason why a pin holds nothing.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum PinError {
+    /// A pin names a particle outside the cloth.
+    #[error("{pin} is outside a cloth of {cloth}")]
+    OutOfRange {
+        /// The pin.
+        pin: String,
+        /// The cloth's columns and rows, or its particles and vertices.
+        cloth: String,
+    },
+    /// A pin names rows and columns, but the cloth is not a grid.
+    #[error(
+        "{pin} names rows and columns, but the cloth is a mesh: pin it by vertex, position, colour or attribute"
+    )]
+    NeedsGrid {
+        /// The pin.
+        pin: String,
+    },
+    /// A pin names a vertex attribute that the mesh does not have, or that is not numeric.
+    #[error("{pin} needs an attribute that the mesh does not have; it has: {attributes}")]
+    NoSuchAttribute {
+        /// The pin.
+        pin: String,
+        /// The names of the mesh's attributes.
+        attributes: String,
+    },
+    /// A pin by position, colour or attribute matches no particle.
+    #[error("{pin} matches no particle of the cloth")]
+    FindsNothing {
+        /// The pin.
+        pin: String,
+    },
+}
 
 impl Default for Pins {
     fn default() -> Self {
@@ -65,7 +104,7 @@ impl Pins {
     ///
     /// # Errors
     /// Those of [`Pin::validate`], for the first invalid pin.
-    pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
+    pub fn validate(&self, surface: &Surface) -> Result<(), PinError> {
         self.0.iter().try_for_each(|pin| pin.validate(surface))
     }
 
@@ -138,7 +177,7 @@ mod tests {
             let error = Pins::new([Pin::Row(0), pin.clone()]).validate(&surface);
             assert_eq!(
                 error,
-                Err(ClothError::PinOutOfRange {
+                Err(PinError::OutOfRange {
                     pin: format!("{pin:?}"),
                     cloth: "4 columns × 3 rows".into()
                 })

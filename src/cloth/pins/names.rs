@@ -1,8 +1,7 @@
 //! The particles that each pin names on a surface.
 
-use super::{Corner, Pin};
+use super::{Corner, Pin, PinError};
 use crate::cloth::{
-    error::ClothError,
     grid::ClothGrid,
     surface::{Surface, VertexAttribute},
 };
@@ -11,10 +10,10 @@ impl Pin {
     /// Checks that the pin names particles of `surface`. A predicate may match none.
     ///
     /// # Errors
-    /// [`ClothError::PinOutOfRange`], [`PinNeedsGrid`](ClothError::PinNeedsGrid),
-    /// [`NoSuchAttribute`](ClothError::NoSuchAttribute), or [`PinFindsNothing`](ClothError::PinFindsNothing) if no
+    /// [`PinError::OutOfRange`], [`NeedsGrid`](PinError::NeedsGrid),
+    /// [`NoSuchAttribute`](PinError::NoSuchAttribute), or [`FindsNothing`](PinError::FindsNothing) if no
     /// particle has the position, colour or attribute.
-    pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
+    pub fn validate(&self, surface: &Surface) -> Result<(), PinError> {
         let pin = || format!("{self:?}");
         let is_inside = match (self, surface.rest_grid()) {
             (Self::Index(index), _) => *index < surface.len(),
@@ -26,12 +25,12 @@ impl Pin {
                 if *channel < 4 && attributes.iter().any(|each| each.name() == name) {
                     return self.finds_something(surface);
                 }
-                return Err(ClothError::NoSuchAttribute {
+                return Err(PinError::NoSuchAttribute {
                     pin: pin(),
                     attributes: VertexAttribute::names(attributes),
                 });
             }
-            (_, None) => return Err(ClothError::PinNeedsGrid { pin: pin() }),
+            (_, None) => return Err(PinError::NeedsGrid { pin: pin() }),
             (Self::Cell(row, column), Some(grid)) => *row < grid.rows() && *column < grid.columns(),
             (Self::Row(row), Some(grid)) => *row < grid.rows(),
             (Self::Column(column), Some(grid)) => *column < grid.columns(),
@@ -39,7 +38,7 @@ impl Pin {
         if is_inside {
             return Ok(());
         }
-        Err(ClothError::PinOutOfRange {
+        Err(PinError::OutOfRange {
             pin: pin(),
             cloth: surface.to_string(),
         })
@@ -51,13 +50,13 @@ impl Pin {
         is_predicate && self.finds_something(surface).is_err()
     }
 
-    fn finds_something(&self, surface: &Surface) -> Result<(), ClothError> {
+    fn finds_something(&self, surface: &Surface) -> Result<(), PinError> {
         let mut found = false;
         self.for_each(surface, |_| found = true);
         if found {
             return Ok(());
         }
-        Err(ClothError::PinFindsNothing {
+        Err(PinError::FindsNothing {
             pin: format!("{self:?}"),
         })
     }

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use super::line::Line;
 use crate::cloth::{
-    error::ClothError,
     lines::{EdgeLine, edge_lines},
-    pins::Pin,
+    pins::{Pin, PinError},
     surface::Surface,
 };
 
@@ -24,15 +23,15 @@ impl SewnSide {
     /// follow it, and other particles follow edges. Where these enclose faces, they are a region.
     ///
     /// # Errors
-    /// Those of [`Pin::validate`], and [`ClothError::PinFindsNothing`].
-    pub fn of(surface: &Surface, pins: &[Pin]) -> Result<Self, ClothError> {
+    /// Those of [`Pin::validate`], and [`PinError::FindsNothing`].
+    pub fn of(surface: &Surface, pins: &[Pin]) -> Result<Self, PinError> {
         pins.iter().try_for_each(|pin| pin.validate(surface))?;
         let mut named: Vec<u32> = Vec::new();
         for pin in pins {
             pin.for_each(surface, |particle| named.push(particle as u32));
         }
         if named.is_empty() {
-            return Err(ClothError::PinFindsNothing {
+            return Err(PinError::FindsNothing {
                 pin: format!("{pins:?}"),
             });
         }

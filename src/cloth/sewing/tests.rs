@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::*;
 use crate::{
-    cloth::{Cloth, ClothError, Pin, Surface},
+    cloth::{Cloth, Pin, PinError, Surface},
     meshes::irregular,
 };
 
@@ -68,7 +68,7 @@ fn rows_borders_and_lists_are_lines() {
     let whole = side(&surface, &[Pin::at_rest(|_| true)]);
     assert_eq!(whole, SewnSide::Region(surface.triangles().to_vec()));
     let nothing = SewnSide::of(&surface, &[Pin::at_rest(|_| false)]);
-    assert!(matches!(nothing, Err(ClothError::PinFindsNothing { .. })));
+    assert!(matches!(nothing, Err(PinError::FindsNothing { .. })));
     assert!(SewnSide::of(&surface, &[]).is_err());
     assert!(SewnSide::of(&surface, &[Pin::Row(4)]).is_err());
 }

@@ -1,10 +1,49 @@
 //! Linear blend skinning of particles and vertices.
 
-use bevy::math::{Affine3A, Vec3, Vec3A};
+use bevy::{
+    ecs::entity::Entity,
+    math::{Affine3A, Vec3, Vec3A},
+    reflect::Reflect,
+};
+use thiserror::Error;
 
 use crate::cloth::surface::JointWeights;
 #[cfg(feature = "mesh")]
-use crate::cloth::{error::ClothError, surface::Surface};
+use crate::cloth::surface::Surface;
+
+/// The reason why a skinned mesh can't follow its joints.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum SkinError {
+    /// A skinned mesh has a joint weight that is negative or not finite.
+    #[error("the joint weights of vertex {vertex} must be finite and not negative: {weights:?}")]
+    Weights {
+        /// Index of the vertex.
+        vertex: usize,
+        /// Its weights.
+        weights: [f32; 4],
+    },
+    /// A skinned mesh has no joint indices and weights, or its vertices name joints that do not exist.
+    #[error(
+        "the mesh needs joint indices and weights for each vertex, and {needed} joints with inverse bind poses, but there are {joints}"
+    )]
+    MissingJoints {
+        /// Number of joints that the vertices name.
+        needed: usize,
+        /// Number of joints that exist.
+        joints: usize,
+    },
+    /// A joint of a skinned mesh does not exist, or its transform is not finite.
+    #[error("joint {joint} of the skin, {entity}, must exist and have a finite global transform")]
+    Joint {
+        /// Index of the joint.
+        joint: usize,
+        /// Its entity.
+        entity: Entity,
+    },
+}
 
 /// Linear blend skinning of a surface's particles, in the mesh's metres, before any scale.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -26,13 +65,13 @@ impl Skinning {
     /// takes the skin of its first vertex. Weights are normalized; a vertex without weights follows the first joint.
     ///
     /// # Errors
-    /// [`ClothError::SkinWeights`] for the first vertex whose weights are negative or not finite.
+    /// [`SkinError::Weights`] for the first vertex whose weights are negative or not finite.
     #[cfg(feature = "mesh")]
     pub fn new(
         surface: &Surface,
         places: &[Vec3],
         skin: &[JointWeights],
-    ) -> Result<Self, ClothError> {
+    ) -> Result<Self, SkinError> {
         let mut particles = vec![None; surface.len()];
         let mirrors = surface.scale().element_product().signum();
         for (vertex, (place, skin)) in places.iter().zip(skin).enumerate() {
@@ -64,7 +103,7 @@ impl Skinning {
     #[cfg(feature = "mesh")]
     pub fn of_vertices(
         vertices: impl Iterator<Item = (usize, Vec3, JointWeights)>,
-    ) -> Result<Self, ClothError> {
+    ) -> Result<Self, SkinError> {
         let bound = |(vertex, place, skin): (usize, Vec3, JointWeights)| {
             Ok(Bound {
                 place: place.into(),
@@ -72,7 +111,7 @@ impl Skinning {
                 skin: normalized(vertex, &skin)?,
             })
         };
-        let bound: Result<_, ClothError> = vertices.map(bound).collect();
+        let bound: Result<_, SkinError> = vertices.map(bound).collect();
         bound.map(Self::of)
     }
 
@@ -146,10 +185,10 @@ impl Bound {
 }
 
 #[cfg(feature = "mesh")]
-fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, ClothError> {
+fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, SkinError> {
     let sum: f32 = skin.weights.iter().sum();
     if !(sum.is_finite() && skin.weights.iter().all(|weight| *weight >= 0.0)) {
-        return Err(ClothError::SkinWeights {
+        return Err(SkinError::Weights {
             vertex,
             weights: skin.weights,
         });
@@ -242,7 +281,7 @@ mod tests {
             skin[17].weights[2] = bad;
             let error = Skinning::new(&surface, &places, &skin).expect_err("no weight");
             assert!(
-                matches!(error, ClothError::SkinWeights { vertex: 17, .. }),
+                matches!(error, SkinError::Weights { vertex: 17, .. }),
                 "{error}"
             );
         }

@@ -10,10 +10,11 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::error::ClothError;
+use super::quantity::QuantityError;
 
+pub use binding::SkinError;
 pub(crate) use binding::Skinning;
-pub use paint::{ClothPaint, RestFunction};
+pub use paint::{ClothPaint, PaintError, RestFunction};
 
 /// Makes a cloth follow a skinned pose. It limits each particle's distance from the pose, and can stop particles from
 /// passing behind it.
@@ -157,19 +158,19 @@ impl ClothSkin {
     /// Checks that the component's own values are in range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is out of range.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is out of range.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         let share = |v: f32| (0.0..=1.0).contains(&v);
-        ClothError::check(self.blend, share, "the skin's blend", "from 0 to 1")?;
+        QuantityError::check(self.blend, share, "the skin's blend", "from 0 to 1")?;
         let positive = |v: f32| v > 0.0;
-        ClothError::check(
+        QuantityError::check(
             self.teleport_distance,
             positive,
             "the skin's teleport distance (m)",
             "positive",
         )?;
         if let Some(backstop) = &self.backstop {
-            ClothError::check(
+            QuantityError::check(
                 backstop.radius,
                 |v| v > 0.0 && v.is_finite(),
                 "the backstop's radius (m)",

@@ -6,9 +6,10 @@ use bevy::{
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
+use thiserror::Error;
 
 use crate::cloth::{
-    error::ClothError,
+    quantity::QuantityError,
     surface::{Surface, VertexAttribute},
 };
 
@@ -89,6 +90,35 @@ impl From<f32> for ClothPaint {
     }
 }
 
+/// The reason why a paint gives no values.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum PaintError {
+    /// A paint names a vertex attribute or a channel that does not exist.
+    #[error("no channel {channel} of a vertex attribute \"{name}\"; the cloth has: {attributes}")]
+    NoSuchChannel {
+        /// The name of the attribute.
+        name: String,
+        /// The channel, from 0.
+        channel: usize,
+        /// The names of the cloth's attributes.
+        attributes: String,
+    },
+    /// A paint does not have one value for each vertex.
+    #[error("{found} values were given for {expected} vertices: give one for each vertex")]
+    Count {
+        /// Number of vertices.
+        expected: usize,
+        /// Number of values.
+        found: usize,
+    },
+    /// A value is out of range.
+    #[error(transparent)]
+    Quantity(#[from] QuantityError),
+}
+
 impl ClothPaint {
     /// A channel of the vertex colours times a scale: 0 for red, 3 for alpha.
     pub fn color(channel: usize, scale: f32) -> Self {
@@ -117,13 +147,13 @@ impl ClothPaint {
     /// The value of each particle of `surface`, none of them NaN or negative. Errors name them by `quantity`.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first that is NaN or negative; [`ClothError::NoSuchPaint`];
-    /// [`ClothError::PaintCount`].
+    /// [`PaintError::Quantity`] for the first that is NaN or negative; [`PaintError::NoSuchChannel`];
+    /// [`PaintError::Count`].
     pub(crate) fn values(
         &self,
         surface: &Surface,
         quantity: &'static str,
-    ) -> Result<Vec<f32>, ClothError> {
+    ) -> Result<Vec<f32>, PaintError> {
         let values = match self {
             Self::Uniform(value) => vec![*value; surface.len()],
             Self::Attribute {
@@ -145,7 +175,7 @@ impl ClothPaint {
             Self::Vertices(values) => of_vertices(surface, values)?,
         };
         for value in &values {
-            ClothError::check(*value, |v| v >= 0.0, quantity, "zero or more")?;
+            QuantityError::check(*value, |v| v >= 0.0, quantity, "zero or more")?;
         }
         Ok(values)
     }
@@ -155,22 +185,22 @@ fn attribute<'a>(
     surface: &'a Surface,
     name: &str,
     channel: usize,
-) -> Result<&'a [[f32; 4]], ClothError> {
+) -> Result<&'a [[f32; 4]], PaintError> {
     let attributes = surface.attributes();
     let found = attributes.iter().find(|each| each.name() == name);
     found
         .filter(|_| channel < 4)
         .map(VertexAttribute::values)
-        .ok_or_else(|| ClothError::NoSuchPaint {
+        .ok_or_else(|| PaintError::NoSuchChannel {
             name: name.into(),
             channel,
             attributes: VertexAttribute::names(attributes),
         })
 }
 
-fn of_vertices(surface: &Surface, values: &[f32]) -> Result<Vec<f32>, ClothError> {
+fn of_vertices(surface: &Surface, values: &[f32]) -> Result<Vec<f32>, PaintError> {
     if values.len() != surface.vertices() {
-        return Err(ClothError::PaintCount {
+        return Err(PaintError::Count {
             expected: surface.vertices(),
             found: values.len(),
         });
@@ -248,14 +278,14 @@ mod tests {
                 ClothPaint::vertices([bad; 6]),
             ] {
                 let error = of(paint).expect_err("not a number of metres");
-                assert!(matches!(error, ClothError::Quantity { .. }), "{error}");
+                assert!(matches!(error, PaintError::Quantity(_)), "{error}");
             }
         }
         let error = of(ClothPaint::color(0, 1.0)).expect_err("not painted");
         assert!(error.to_string().contains("Slack"), "{error}");
         assert!(of(ClothPaint::attribute("Slack", 4, 1.0)).is_err());
         let error = of(ClothPaint::vertices([1.0; 5])).expect_err("too few");
-        let count = ClothError::PaintCount {
+        let count = PaintError::Count {
             expected: 6,
             found: 5,
         };

@@ -8,9 +8,9 @@ mod tests;
 use std::sync::Arc;
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+use thiserror::Error;
 
 use super::{
-    error::ClothError,
     grid::ClothGrid,
     lanes::Layout,
     material::ClothMaterial,
@@ -96,6 +96,26 @@ const GRID_COLOURS: [((u32, i32), u32); 8] = [
     ((1, -1), 1),
 ];
 
+/// The reason why a list of springs is refused.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum SpringError {
+    /// A spring does not join two different particles, or its rest length or compliance is out of range.
+    #[error(
+        "spring {index}, {spring:?}, must join two of the {particles} particles, with a rest length from 10⁻⁹ to 10¹² m and a finite compliance of zero or more"
+    )]
+    Invalid {
+        /// Its index in the list.
+        index: usize,
+        /// The spring.
+        spring: Spring,
+        /// Number of particles.
+        particles: usize,
+    },
+}
+
 impl Springs {
     /// Structural and shear springs of `grid`. A strip's compliance follows from its length and width
     /// ([`ClothMaterial`]); a strip on a border is half as wide. Kinds whose compliance is infinite are left out. They do not
@@ -115,9 +135,9 @@ impl Springs {
     /// Beyond 63 springs at a particle, each further spring gets its own colour.
     ///
     /// # Errors
-    /// [`ClothError::BadSpring`] for the first that does not join two different particles, or whose rest length or
+    /// [`SpringError::Invalid`] for the first that does not join two different particles, or whose rest length or
     /// compliance is out of range.
-    pub fn of_list(springs: &[Spring], particles: usize) -> Result<Self, ClothError> {
+    pub fn of_list(springs: &[Spring], particles: usize) -> Result<Self, SpringError> {
         for (index, spring) in springs.iter().enumerate() {
             let [a, b] = spring.ends.map(|end| end as usize);
             let is_valid = a.max(b) < particles
@@ -126,7 +146,7 @@ impl Springs {
                 && spring.compliance >= 0.0
                 && spring.compliance.is_finite();
             if !is_valid {
-                return Err(ClothError::BadSpring {
+                return Err(SpringError::Invalid {
                     index,
                     spring: *spring,
                     particles,

@@ -130,7 +130,7 @@ fn a_list_is_coloured_and_no_spring_is_lost() {
         list[7] = bad;
         assert!(matches!(
             Springs::of_list(&list, 40),
-            Err(ClothError::BadSpring { index: 7, .. })
+            Err(SpringError::Invalid { index: 7, .. })
         ));
     }
 }

@@ -9,8 +9,7 @@ use bevy::{
     },
 };
 
-use super::triangles::{JointWeights, TriangleMesh, VertexAttribute};
-use crate::cloth::error::ClothError;
+use super::triangles::{JointWeights, MeshError, TriangleMesh, VertexAttribute};
 
 /// Attributes that a surface stores in other ways or does not use.
 const OTHERS: [MeshVertexAttribute; 7] = [
@@ -27,10 +26,10 @@ impl TriangleMesh {
     /// Reads the triangles of a mesh asset: a triangle list or strip, with 16-bit, 32-bit or no indices.
     ///
     /// # Errors
-    /// [`ClothError::MeshNotReadable`] for a mesh that is only in the render world; [`ClothError::MeshTopology`] for
-    /// lines or points; [`ClothError::MeshWithoutPositions`]; [`ClothError::MeshIndexCount`] for an incomplete
+    /// [`MeshError::NotReadable`] for a mesh that is only in the render world; [`MeshError::Topology`] for
+    /// lines or points; [`MeshError::WithoutPositions`]; [`MeshError::IndexCount`] for an incomplete
     /// triangle.
-    pub fn of_asset(mesh: &Mesh) -> Result<Self, ClothError> {
+    pub fn of_asset(mesh: &Mesh) -> Result<Self, MeshError> {
         let positions = positions_of_asset(mesh)?;
         let read = |attribute| attribute_of(mesh, attribute);
         let triangles = triangles(mesh, positions.len())?;
@@ -64,14 +63,14 @@ impl TriangleMesh {
 /// An attribute of a mesh, if it has it.
 ///
 /// # Errors
-/// [`ClothError::MeshNotReadable`].
+/// [`MeshError::NotReadable`].
 fn attribute_of(
     mesh: &Mesh,
     attribute: MeshVertexAttribute,
-) -> Result<Option<&VertexAttributeValues>, ClothError> {
+) -> Result<Option<&VertexAttributeValues>, MeshError> {
     match mesh.try_attribute_option(attribute) {
         Ok(values) => Ok(values),
-        Err(MeshAccessError::ExtractedToRenderWorld) => Err(ClothError::MeshNotReadable),
+        Err(MeshAccessError::ExtractedToRenderWorld) => Err(MeshError::NotReadable),
         Err(_) => Ok(None),
     }
 }
@@ -79,25 +78,25 @@ fn attribute_of(
 /// The positions of a mesh's vertices.
 ///
 /// # Errors
-/// [`ClothError::MeshNotReadable`], [`ClothError::MeshWithoutPositions`].
-pub(crate) fn positions_of_asset(mesh: &Mesh) -> Result<Vec<Vec3>, ClothError> {
+/// [`MeshError::NotReadable`], [`MeshError::WithoutPositions`].
+pub(crate) fn positions_of_asset(mesh: &Mesh) -> Result<Vec<Vec3>, MeshError> {
     // The renderer would soon take its vertices.
     if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
-        return Err(ClothError::MeshNotReadable);
+        return Err(MeshError::NotReadable);
     }
     match attribute_of(mesh, Mesh::ATTRIBUTE_POSITION)? {
         Some(VertexAttributeValues::Float32x3(positions)) => {
             Ok(positions.iter().copied().map(Vec3::from).collect())
         }
-        _ => Err(ClothError::MeshWithoutPositions),
+        _ => Err(MeshError::WithoutPositions),
     }
 }
 
 /// The joints and weights of each vertex of a skinned mesh; `None` for a mesh without joint indices and weights.
 ///
 /// # Errors
-/// [`ClothError::MeshNotReadable`] for a mesh that is only in the render world.
-pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, ClothError> {
+/// [`MeshError::NotReadable`] for a mesh that is only in the render world.
+pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, MeshError> {
     let read = |attribute| attribute_of(mesh, attribute);
     let (
         Some(VertexAttributeValues::Uint16x4(joints)),
@@ -117,12 +116,12 @@ pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, Cl
 /// The indices of a mesh of that many vertices: one after the other, if it lists none.
 ///
 /// # Errors
-/// [`ClothError::MeshNotReadable`].
-pub(crate) fn indices_of_asset(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, ClothError> {
+/// [`MeshError::NotReadable`].
+pub(crate) fn indices_of_asset(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>, MeshError> {
     let indices = match mesh.try_indices_option() {
         Ok(indices) => indices,
         Err(MeshAccessError::NotFound) => None,
-        Err(_) => return Err(ClothError::MeshNotReadable),
+        Err(_) => return Err(MeshError::NotReadable),
     };
     Ok(match indices {
         Some(Indices::U16(indices)) => indices.iter().map(|index| u32::from(*index)).collect(),
@@ -132,7 +131,7 @@ pub(crate) fn indices_of_asset(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>,
 }
 
 /// The triangles of a mesh, by its vertices.
-fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> {
+fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, MeshError> {
     let indices = indices_of_asset(mesh, vertices)?;
     match mesh.primitive_topology() {
         PrimitiveTopology::TriangleList => {
@@ -140,7 +139,7 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> 
             if left.is_empty() {
                 Ok(triangles.to_vec())
             } else {
-                Err(ClothError::MeshIndexCount {
+                Err(MeshError::IndexCount {
                     indices: indices.len(),
                 })
             }
@@ -153,7 +152,7 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, ClothError> 
             };
             Ok(triangles.map(turned).collect())
         }
-        topology => Err(ClothError::MeshTopology {
+        topology => Err(MeshError::Topology {
             topology: format!("{topology:?}"),
         }),
     }

@@ -11,10 +11,10 @@ use super::{
     graph::Graph,
     orientation::orient,
     springs::{Side, face_area, has_area, links, sides, sides_of},
-    triangles::{TriangleMesh, VertexAttribute},
+    triangles::{MeshError, TriangleMesh, VertexAttribute},
     weld::same_places,
 };
-use crate::cloth::{error::ClothError, limits::FARTHEST, spring::SpringKind};
+use crate::cloth::{limits::FARTHEST, quantity::QuantityError, spring::SpringKind};
 
 /// The most particles that a cloth from a mesh may have: more could not run in real time.
 pub const MAX_MESH_PARTICLES: usize = 1 << 18;
@@ -35,7 +35,7 @@ impl Surface {
     ///
     /// # Errors
     /// The first error found, with the vertex or triangle at fault.
-    pub fn of_mesh(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<Self, ClothError> {
+    pub fn of_mesh(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<Self, MeshError> {
         check(mesh, weld, scale)?;
         let places: Vec<Vec3> = mesh.positions.iter().map(|place| *place * scale).collect();
         // A shorter length could not be measured.
@@ -48,9 +48,9 @@ impl Surface {
     }
 }
 
-fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> {
+fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), MeshError> {
     let range = "zero or more, and finite";
-    ClothError::check(
+    QuantityError::check(
         weld,
         |w| w >= 0.0 && w.is_finite(),
         "weld distance (m)",
@@ -59,7 +59,7 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
     let vertices = mesh.positions.len();
     // A particle usually has a few vertices; far too many are rejected before welding.
     if vertices > 8 * MAX_MESH_PARTICLES {
-        return Err(ClothError::MeshTooLarge {
+        return Err(MeshError::TooLarge {
             particles: vertices,
         });
     }
@@ -70,7 +70,7 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
         .iter()
         .position(|place| !is_measurable(place))
     {
-        return Err(ClothError::VertexNotFinite {
+        return Err(MeshError::VertexNotFinite {
             vertex,
             position: mesh.positions[vertex],
         });
@@ -78,7 +78,7 @@ fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), ClothError> 
     let is_beyond =
         |triangle: &[u32; 3]| triangle.iter().any(|corner| *corner as usize >= vertices);
     if let Some(triangle) = mesh.triangles.iter().position(is_beyond) {
-        return Err(ClothError::TriangleOutOfRange {
+        return Err(MeshError::TriangleOutOfRange {
             triangle,
             corners: mesh.triangles[triangle],
             vertices,
@@ -126,7 +126,7 @@ impl Welded {
     }
 
     /// Checks that there are no more particles than a cloth may have.
-    fn check_count(&self) -> Result<(), ClothError> {
+    fn check_count(&self) -> Result<(), MeshError> {
         let mut is_corner = vec![false; self.rest.len()];
         self.faces
             .iter()
@@ -134,13 +134,13 @@ impl Welded {
             .for_each(|corner| is_corner[*corner as usize] = true);
         let particles = is_corner.into_iter().filter(|is_corner| *is_corner).count();
         if particles > MAX_MESH_PARTICLES {
-            return Err(ClothError::MeshTooLarge { particles });
+            return Err(MeshError::TooLarge { particles });
         }
         Ok(())
     }
 
     /// Drops faces without an area, and particles without a share of the area, with their faces.
-    fn drop_what_has_no_area(&mut self, triangles: usize) -> Result<(), ClothError> {
+    fn drop_what_has_no_area(&mut self, triangles: usize) -> Result<(), MeshError> {
         self.faces.retain(|face| has_area(*face, &self.rest));
         loop {
             let (areas, total) = self.areas();
@@ -151,7 +151,7 @@ impl Welded {
                 .retain(|face| face.iter().all(|corner| stands_for_some(*corner)));
             // Lengths in a cloth have to exceed rounding errors.
             if self.faces.is_empty() || mean < 1.0e-18 {
-                return Err(ClothError::MeshWithoutArea { triangles });
+                return Err(MeshError::WithoutArea { triangles });
             }
             if self.faces.len() == before {
                 return Ok(());

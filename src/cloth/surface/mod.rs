@@ -43,8 +43,10 @@ use incidence::Incidence;
 
 pub use binding::SurfaceBinding;
 pub use from_mesh::MAX_MESH_PARTICLES;
-pub use triangles::{TriangleMesh, VertexAttribute};
+pub use torn::TearError;
+pub use triangles::{MeshError, TriangleMesh, VertexAttribute};
 use triangulation::Triangulation;
+pub use woven::GrainError;
 
 #[cfg(feature = "mesh")]
 pub(crate) use asset::{indices_of_asset, positions_of_asset, skin_of_asset};
@@ -343,12 +345,7 @@ impl Surface {
         let flat = self.derived.flat.get_or_init(|| match &self.grid {
             Some(grid) => Some(grid::flat(grid)),
             None if self.extent.pieces > 1 => None,
-            None => Flat::find(
-                &self.rest,
-                self.faces().all(),
-                &self.is_border,
-                self.extent.area,
-            ),
+            None => Flat::find(&self.rest, self.triangles(), &self.is_border, self.area()),
         });
         flat.as_ref()
     }

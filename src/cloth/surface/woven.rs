@@ -2,7 +2,11 @@
 
 use std::sync::OnceLock;
 
-use bevy::math::{Vec2, Vec3};
+use bevy::{
+    math::{Vec2, Vec3},
+    reflect::Reflect,
+};
+use thiserror::Error;
 
 use super::{
     Surface,
@@ -10,12 +14,37 @@ use super::{
     springs::{Link, for_each_link, sides_of},
     triangles::TriangleMesh,
 };
-use crate::cloth::{error::ClothError, spring::SpringKind};
+use crate::cloth::spring::SpringKind;
 
 /// A triangle whose area in the texture is less than this fraction of its squared size there has no direction.
 const FOLDED: f32 = 1.0e-6;
 /// An axis is perpendicular to a face if less than this fraction of it lies in the face.
 const PERPENDICULAR: f32 = 1.0e-3;
+
+/// The reason why a mesh has no grain.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum GrainError {
+    /// The axis of a [`ClothGrain`](crate::cloth::ClothGrain) has no direction.
+    #[error("the axis of a grain must be finite and have a length: {axis}")]
+    Axis {
+        /// The axis.
+        axis: Vec3,
+    },
+    /// A mesh with a weft has no texture coordinates that its warp could follow.
+    #[error("a weft on a mesh needs texture coordinates to follow, or a `ClothGrain` with an axis")]
+    NeedsUvs,
+    /// A triangle of a mesh with a weft has no area in the texture, and so no direction of its warp.
+    #[error(
+        "triangle {triangle} has no area in the texture, so its warp has no direction: unfold it, or insert a `ClothGrain` with an axis"
+    )]
+    FoldedUvs {
+        /// Index of the triangle.
+        triangle: usize,
+    },
+}
 
 impl Surface {
     /// Gives each face of a mesh the direction of its warp, of length 1.
@@ -52,12 +81,12 @@ impl Surface {
     /// The direction of V in each face. `mesh` is the one that the surface was made from.
     ///
     /// # Errors
-    /// [`ClothError::GrainNeedsUvs`] without texture coordinates; [`ClothError::FoldedUvs`] for the first face without an
+    /// [`GrainError::NeedsUvs`] without texture coordinates; [`GrainError::FoldedUvs`] for the first face without an
     /// area in the texture.
-    pub(crate) fn grain_of_texture(&self, mesh: &TriangleMesh) -> Result<Vec<Vec3>, ClothError> {
+    pub(crate) fn grain_of_texture(&self, mesh: &TriangleMesh) -> Result<Vec<Vec3>, GrainError> {
         let vertices = self.vertices();
         if mesh.uvs.len() != vertices || mesh.positions.len() != vertices {
-            return Err(ClothError::GrainNeedsUvs);
+            return Err(GrainError::NeedsUvs);
         }
         let sorted = |mut corners: [u32; 3]| {
             corners.sort_unstable();
@@ -76,9 +105,9 @@ impl Surface {
             let corners = sorted(*face);
             let at = triangles.partition_point(|(known, _)| *known < corners);
             let found = triangles.get(at).filter(|(known, _)| *known == corners);
-            let (_, triangle) = *found.ok_or(ClothError::GrainNeedsUvs)?;
+            let (_, triangle) = *found.ok_or(GrainError::NeedsUvs)?;
             self.along_v(mesh, mesh.triangles[triangle])
-                .ok_or(ClothError::FoldedUvs { triangle })
+                .ok_or(GrainError::FoldedUvs { triangle })
         };
         self.triangles().iter().map(of_face).collect()
     }

@@ -15,7 +15,7 @@ use super::{
     geometry::{ColliderGeometry, Parts, turn_up},
     shape::ColliderShape,
 };
-use crate::cloth::ClothError;
+use crate::cloth::{ClothError, QuantityError, ShapeError};
 
 /// A shape of many points, before the transform's scale. Clones share it and the geometry built from it: cloning is
 /// cheap, and clones are equal.
@@ -126,10 +126,10 @@ impl Source {
         let mut parts = Parts::default();
         match self {
             Self::Nothing => {
-                return Err(ClothError::NoSuchShape {
+                return Err(ClothError::Shape(ShapeError::NoSuchShape {
                     shape: "points or triangles given in code, which a scene file cannot store"
                         .into(),
-                });
+                }));
             }
             Self::Hull(points) => {
                 let points: Vec<Vec3> = points.iter().map(|&point| point * scale).collect();
@@ -159,11 +159,11 @@ impl Source {
 /// Checks that a shape can have this scale.
 ///
 /// # Errors
-/// [`ClothError::Quantity`] for a scale that is zero or not finite.
-pub(crate) fn check_scale(scale: Vec3) -> Result<(), ClothError> {
+/// [`QuantityError`] for a scale that is zero or not finite.
+pub(crate) fn check_scale(scale: Vec3) -> Result<(), QuantityError> {
     let is_scale = |scale: f32| scale != 0.0 && scale.is_finite();
     for scale in scale.to_array() {
-        ClothError::check(scale, is_scale, "the shape's scale", "finite and not zero")?;
+        QuantityError::check(scale, is_scale, "the shape's scale", "finite and not zero")?;
     }
     Ok(())
 }
@@ -203,15 +203,15 @@ fn upright(shape: &SharedShape) -> Option<(Isometry3d, ColliderShape)> {
 /// The triangles of a height field: rows along z and columns along x, around the origin.
 ///
 /// # Errors
-/// [`ClothError::HeightFieldSize`] unless there are at least two rows and columns, and a height at each crossing.
+/// [`ShapeError::HeightFieldSize`] unless there are at least two rows and columns, and a height at each crossing.
 fn height_field(
     heights: &[f32],
     columns: usize,
     size: Vec3,
-) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), ClothError> {
+) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), ShapeError> {
     let rows = heights.len().checked_div(columns).unwrap_or(0);
     if columns < 2 || rows < 2 || rows * columns != heights.len() {
-        return Err(ClothError::HeightFieldSize {
+        return Err(ShapeError::HeightFieldSize {
             heights: heights.len(),
             columns,
         });

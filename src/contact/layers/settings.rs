@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::{ClothError, Surface};
+use crate::cloth::{ClothError, QuantityError, SelfCollisionError, Surface};
 
 /// Largest thickness, as a fraction of the shortest spacing: a thicker cloth would push its own neighbours.
 const MAX_OF_SPACING: f32 = 0.5;
@@ -65,10 +65,10 @@ impl ClothSelfCollision {
     /// Checks all values against the surface of the cloth.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a thickness that is not positive, or a friction that is negative or not finite;
-    /// [`ClothError::TooThick`] for more than half of the shortest spacing.
+    /// [`QuantityError`] for a thickness that is not positive, or a friction that is negative or not finite;
+    /// [`SelfCollisionError::TooThick`] for more than half of the shortest spacing.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
-        let thickness = ClothError::check(
+        let thickness = QuantityError::check(
             self.thickness,
             |thickness| thickness > 0.0 && thickness.is_finite(),
             "the thickness of self-colliding cloth (m)",
@@ -76,12 +76,12 @@ impl ClothSelfCollision {
         )?;
         let shortest = surface.spacing().shortest;
         if thickness > MAX_OF_SPACING * shortest {
-            return Err(ClothError::TooThick {
+            return Err(ClothError::SelfCollision(SelfCollisionError::TooThick {
                 thickness,
                 shortest,
-            });
+            }));
         }
-        ClothError::check(
+        QuantityError::check(
             self.friction,
             |friction| friction >= 0.0 && friction.is_finite(),
             "friction between layers of cloth (1)",

@@ -18,7 +18,8 @@ use bevy::{
 };
 
 use crate::cloth::{
-    ClothError, ClothGrid, ClothParticles, Graph, Layout, Spring, SpringKind, Surface,
+    ClothError, ClothGrid, ClothParticles, Graph, Layout, ParticleError, Spring, SpringError,
+    SpringKind, Surface,
 };
 use network::NetworkTree;
 use shape::Tree;
@@ -71,28 +72,28 @@ impl QuadTree {
     /// are not paths. Takes O(n log² n) time.
     ///
     /// # Errors
-    /// [`ClothError::BadSpring`] for the first spring that does not join two particles, or whose rest length is not
+    /// [`SpringError::Invalid`] for the first spring that does not join two particles, or whose rest length is not
     /// from 10⁻⁹ to 10¹² m. The stretch of a spring without a length is undefined.
-    /// [`ClothError::ParticleNotFinite`] for a position that is not finite.
+    /// [`ParticleError::NotFinite`] for a position that is not finite.
     pub fn of_network(rest: &[Vec3], springs: &[Spring]) -> Result<Self, ClothError> {
         if let Some(index) = rest.iter().position(|position| !position.is_finite()) {
-            return Err(ClothError::ParticleNotFinite {
+            return Err(ClothError::Particle(ParticleError::NotFinite {
                 index,
                 position: rest[index],
                 displacement: Vec3::ZERO,
                 inverse_mass: 0.0,
-            });
+            }));
         }
         let is_valid = |spring: &Spring| {
             spring.ends.iter().all(|&end| (end as usize) < rest.len())
                 && (1.0e-9..=1.0e12).contains(&spring.rest_length)
         };
         if let Some(index) = springs.iter().position(|spring| !is_valid(spring)) {
-            return Err(ClothError::BadSpring {
+            return Err(ClothError::Spring(SpringError::Invalid {
                 index,
                 spring: springs[index],
                 particles: rest.len(),
-            });
+            }));
         }
         // The stretch of bend springs is not measured.
         let paths = springs

@@ -200,14 +200,20 @@ fn a_network_that_is_not_valid_is_refused() {
     ] {
         let outcome = QuadTree::of_network(&rest, &[spring([0, 1], 1.0), bad]);
         assert!(
-            matches!(outcome, Err(ClothError::BadSpring { index: 1, .. })),
+            matches!(
+                outcome,
+                Err(ClothError::Spring(SpringError::Invalid { index: 1, .. }))
+            ),
             "{outcome:?}"
         );
     }
     let nowhere = QuadTree::of_network(&[Vec3::NAN], &[]);
     assert!(matches!(
         nowhere,
-        Err(ClothError::ParticleNotFinite { index: 0, .. })
+        Err(ClothError::Particle(ParticleError::NotFinite {
+            index: 0,
+            ..
+        }))
     ));
 }
 

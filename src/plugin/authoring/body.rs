@@ -6,7 +6,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::{cloth::ClothError, contact::BodyMass};
+use crate::{cloth::QuantityError, contact::BodyMass};
 
 /// Lets cloth push a [`ClothCollider`](crate::contact::ClothCollider) back, by giving it a mass. Without this
 /// component, cloth never moves a collider. It moves no skinned mesh.
@@ -96,25 +96,25 @@ impl ClothBody {
     /// Its mass where the entity is turned by `rotation`, about the entity's origin.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a value that is out of range.
-    pub(crate) fn mass_at(&self, rotation: Quat) -> Result<BodyMass, ClothError> {
+    /// [`QuantityError`] for a value that is out of range.
+    pub(crate) fn mass_at(&self, rotation: Quat) -> Result<BodyMass, QuantityError> {
         let positive = |v: f32| v > 0.0 && v.recip().is_finite();
         for moment in self.inertia.to_array() {
-            ClothError::check(moment, positive, "the body's inertia (kg·m²)", "positive")?;
+            QuantityError::check(moment, positive, "the body's inertia (kg·m²)", "positive")?;
         }
-        ClothError::check(
+        QuantityError::check(
             self.centre_of_mass.length(),
             f32::is_finite,
             "the distance of the body's centre of mass from its entity (m)",
             "finite",
         )?;
-        ClothError::check(
+        QuantityError::check(
             self.axes.length(),
             |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
             "the length of the quaternion of the body's axes",
             "positive and finite",
         )?;
-        let mass = ClothError::check(
+        let mass = QuantityError::check(
             self.mass,
             |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
             "the body's mass (kg)",
@@ -153,7 +153,7 @@ mod tests {
             };
             let outcome = body.mass_at(Quat::IDENTITY);
             assert!(
-                matches!(outcome, Err(ClothError::Quantity { quantity, .. }) if quantity.contains("axes")),
+                matches!(outcome, Err(QuantityError { quantity, .. }) if quantity.contains("axes")),
                 "{length}: {outcome:?}"
             );
         }

@@ -13,7 +13,7 @@ use bevy::{
     transform::components::Transform,
 };
 
-use crate::cloth::{ClothError, Surface};
+use crate::cloth::{QuantityError, Surface};
 
 /// A hand that holds a particle of a cloth. Spawn it where a ray [hits](crate::plugin::ClothHit::grab) the cloth, move its
 /// [`target`](Self::target), and despawn it to let go.
@@ -83,19 +83,19 @@ impl ClothGrab {
     /// Checks its numbers.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a value that is out of range.
-    pub(crate) fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for a value that is out of range.
+    pub(crate) fn validate(&self) -> Result<(), QuantityError> {
         let is_size = |v: f32| v >= 0.0 && v.is_finite();
         for (value, quantity) in [
             (self.stretch, "the stretch of a grab"),
             (self.speed, "the speed of a grab (m/s)"),
         ] {
-            ClothError::check(value, is_size, quantity, "finite and 0 or more")?;
+            QuantityError::check(value, is_size, quantity, "finite and 0 or more")?;
         }
         for component in self.target.to_array() {
             let quantity = "the target of a grab (m)";
             let is_near = |v: f32| v.abs() <= 1.0e12;
-            ClothError::check(component, is_near, quantity, "within 10¹² m of the origin")?;
+            QuantityError::check(component, is_near, quantity, "within 10¹² m of the origin")?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::ClothError,
+    cloth::{ClothError, QuantityError},
     plugin::frame::{ClothFrame, Shift, relative},
 };
 
@@ -69,11 +69,11 @@ impl ClothInertia {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is not.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is not.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         for share in [self.linear, self.angular] {
             let is_share = |v: f32| (0.0..=1.0).contains(&v);
-            ClothError::check(
+            QuantityError::check(
                 share,
                 is_share,
                 "the share of motion that is felt",
@@ -84,7 +84,7 @@ impl ClothInertia {
             (self.teleport_distance, "the teleport distance (m)"),
             (self.teleport_angle, "the teleport angle (rad)"),
         ] {
-            ClothError::check(value, |v| v > 0.0, quantity, "positive")?;
+            QuantityError::check(value, |v| v > 0.0, quantity, "positive")?;
         }
         Ok(())
     }

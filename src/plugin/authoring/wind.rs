@@ -10,7 +10,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::ClothError;
+use crate::cloth::QuantityError;
 
 /// Of air at 20 °C and sea level (kg/m³).
 pub(crate) const DENSITY: f32 = 1.2;
@@ -87,20 +87,20 @@ impl ClothWind {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is not.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is not.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         check_velocity(self.velocity)?;
         let density = "density of the air (kg/m³)";
-        ClothError::check(self.density, is_moderate, density, "from 0 to 10⁶")?;
+        QuantityError::check(self.density, is_moderate, density, "from 0 to 10⁶")?;
         for (part, quantity) in [(self.gusts, "gusts"), (self.turbulence, "turbulence")] {
-            ClothError::check(part, is_moderate, quantity, "from 0 to 10⁶")?;
+            QuantityError::check(part, is_moderate, quantity, "from 0 to 10⁶")?;
         }
         for (value, quantity) in [
             (self.gust_period, "period of gusts (s)"),
             (self.turbulence_length, "length of turbulence (m)"),
         ] {
             let is_some = |v: f32| (1.0e-6..=1.0e12).contains(&v);
-            ClothError::check(value, is_some, quantity, "from 10⁻⁶ to 10¹²")?;
+            QuantityError::check(value, is_some, quantity, "from 10⁻⁶ to 10¹²")?;
         }
         Ok(())
     }
@@ -136,11 +136,11 @@ impl ClothAir {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is not.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is not.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         let range = "from 0 to 10⁶";
-        ClothError::check(self.drag, is_moderate, "coefficient of drag", range)?;
-        ClothError::check(self.lift, is_moderate, "coefficient of lift", range)?;
+        QuantityError::check(self.drag, is_moderate, "coefficient of drag", range)?;
+        QuantityError::check(self.lift, is_moderate, "coefficient of lift", range)?;
         self.velocity.map_or(Ok(()), check_velocity)
     }
 }
@@ -149,10 +149,10 @@ fn is_moderate(value: f32) -> bool {
     (0.0..=1.0e6).contains(&value)
 }
 
-pub(crate) fn check_velocity(velocity: Vec3) -> Result<(), ClothError> {
+pub(crate) fn check_velocity(velocity: Vec3) -> Result<(), QuantityError> {
     for value in velocity.to_array() {
         let is_moderate = |v: f32| v.abs() <= 1.0e6;
-        ClothError::check(
+        QuantityError::check(
             value,
             is_moderate,
             "velocity of the air (m/s)",

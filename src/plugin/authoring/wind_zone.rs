@@ -8,7 +8,7 @@ use bevy::{
 
 use super::wind::check_velocity;
 use crate::{
-    cloth::ClothError,
+    cloth::{ClothError, QuantityError},
     plugin::frame::{Places, Shift, unusable},
 };
 
@@ -107,11 +107,11 @@ impl ClothWindZone {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is not.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is not.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         check_velocity(self.velocity)?;
         let softness = "softness of a wind zone";
-        ClothError::check(
+        QuantityError::check(
             self.softness,
             |s| (0.0..=1.0).contains(&s),
             softness,
@@ -123,13 +123,13 @@ impl ClothWindZone {
             ClothWindShape::Cone { length, angle } => {
                 let is_acute = |a: f32| a > 0.0 && a < std::f32::consts::FRAC_PI_2;
                 let quantity = "angle of a wind zone (rad)";
-                ClothError::check(angle, is_acute, quantity, "positive, and less than π/2")?;
+                QuantityError::check(angle, is_acute, quantity, "positive, and less than π/2")?;
                 Vec3::splat(length)
             }
         };
         for length in lengths.to_array() {
             let is_some = |l: f32| (1.0e-6..=1.0e12).contains(&l);
-            ClothError::check(
+            QuantityError::check(
                 length,
                 is_some,
                 "size of a wind zone (m)",

@@ -15,7 +15,7 @@ use bevy::{
 #[cfg(feature = "mesh")]
 use crate::plugin::draw::MeshDrawing;
 use crate::{
-    cloth::ClothError,
+    cloth::QuantityError,
     plugin::{
         authoring::{ClothGrab, ClothWindZone, PlacedZone, RootMotion},
         frame::{ClothFrame, Places, Shift, rigid},
@@ -32,7 +32,7 @@ use crate::{
 /// because they are given in their cloth's frame. An entity that is within rounding of its shifted position counts as being exactly there.
 ///
 /// # Errors
-/// [`ClothError::Quantity`] if `by` is not finite; nothing changes then.
+/// [`QuantityError`] if `by` is not finite; nothing changes then.
 ///
 /// ```
 /// use bevy::prelude::*;
@@ -52,10 +52,10 @@ use crate::{
 ///     }
 /// }
 /// ```
-pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), ClothError> {
+pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), QuantityError> {
     for component in by.to_array() {
         let quantity = "jump of the world's origin (m)";
-        ClothError::check(component, f32::is_finite, quantity, "finite")?;
+        QuantityError::check(component, f32::is_finite, quantity, "finite")?;
     }
     // A world without the plugin remembers nothing.
     if world.contains_resource::<WindField>() {

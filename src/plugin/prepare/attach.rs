@@ -8,7 +8,7 @@ use bevy::{
 
 use super::{carry::set_motion, named::NamedTargets};
 use crate::{
-    cloth::{ClothError, ClothParticles, Surface},
+    cloth::{ClothError, ClothParticles, Surface, TargetError},
     plugin::{
         authoring::{Attached, ClothAttachment},
         frame::{ClothFrame, Places, global_transform, rigid},
@@ -33,7 +33,7 @@ impl Targets<'_, '_> {
         cloth: Entity,
         attachment: &ClothAttachment,
         known: Option<Entity>,
-    ) -> Result<Entity, ClothError> {
+    ) -> Result<Entity, TargetError> {
         let exists = |entity| global_transform(&self.transforms, entity).is_some();
         let pin = || format!("{:?}", attachment.pin);
         (self.named).find(&attachment.target, cloth, known, exists, pin)
@@ -42,8 +42,8 @@ impl Targets<'_, '_> {
     /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
     ///
     /// # Errors
-    /// [`ClothError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
-    /// [`ClothError::NoTargetNamed`]; or the error of a pin.
+    /// [`TargetError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
+    /// [`TargetError::NoTargetNamed`]; or the error of a pin.
     pub fn find(
         &self,
         cloth: Entity,
@@ -65,7 +65,7 @@ impl Targets<'_, '_> {
             let transform = global_transform(&self.transforms, target);
             let affine = transform.map(|transform| transform.affine());
             let place = affine.filter(|affine| affine.inverse().is_finite());
-            places.push(place.ok_or_else(|| ClothError::NoTarget {
+            places.push(place.ok_or_else(|| TargetError::NoTarget {
                 pin: format!("{:?}", attachment.pin),
                 target,
             })?);

@@ -14,7 +14,7 @@ use super::{
 use crate::{
     cloth::{
         ClothError, ClothParticles, ClothShape, ClothTears, DensityFactors, MaterialFactors,
-        Surface,
+        MeshError, Surface,
     },
     plugin::state::{
         BuiltFrom, ClothBuilt, ClothState, FailedBuild, KnownShape, Recipe, Shared, SharedParts,
@@ -67,7 +67,7 @@ pub(crate) fn build(
         build_new(wanted, sources, parts, particles, built, state)
     };
     let refused = new.as_ref().err();
-    let refused = refused.filter(|error| **error != ClothError::MeshLoading);
+    let refused = refused.filter(|error| **error != ClothError::Mesh(MeshError::Loading));
     built.refused = refused.map(|error| (failing(particles), error.clone()));
     let build = new?;
     if is_kept {

@@ -5,7 +5,7 @@ use bevy::{ecs::change_detection::Tick, math::Vec3};
 use crate::{
     cloth::{
         Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothTears,
-        MaterialFactors, Pins, Surface,
+        MaterialFactors, PaintError, Pins, QuantityError, Surface,
     },
     plugin::{
         authoring::ClothAttachment,
@@ -83,13 +83,13 @@ impl BuildInputs<'_> {
     /// Checks the material.
     ///
     /// # Errors
-    /// Those of [`ClothMaterial::validate`]; [`ClothError::Quantity`] for a rope that stiffens.
+    /// Those of [`ClothMaterial::validate`]; [`QuantityError`] for a rope that stiffens.
     pub(super) fn check_material(&self) -> Result<(), ClothError> {
         self.material.validate()?;
         match self.material.stiffening {
             Some(stiffening) if self.cloth.shape.is_rope() => {
                 let quantity = "factor by which a rope stiffens";
-                ClothError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
+                QuantityError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
                 Ok(())
             }
             _ => Ok(()),
@@ -100,7 +100,7 @@ impl BuildInputs<'_> {
     ///
     /// # Errors
     /// Those of [`ClothMaterialMap::factors`].
-    pub(super) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, ClothError> {
+    pub(super) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, PaintError> {
         let of = |(map, _): (&ClothMaterialMap, Tick)| map.factors(surface);
         self.map.map_or_else(|| Ok(MaterialFactors::default()), of)
     }

@@ -23,7 +23,7 @@ use super::{
     step::{prepare_contact, prepare_step, see_whether_it_rests},
 };
 use crate::{
-    cloth::{ClothError, ClothParticles},
+    cloth::{ClothError, ClothParticles, MeshError},
     plugin::{
         authoring::{
             ClothAttachments, ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod,
@@ -61,7 +61,8 @@ pub(crate) fn prepare_cloths(
         let (seconds, ticks) = cloth.state.lod.take(time.delta_secs());
         let inputs = Inputs::of(&cloth.game, gravity.0);
         let lod = cloth.game.lod.or(global_lod);
-        let inputs = lod.map_or(Ok(()), ClothLod::validate).and(inputs);
+        let checked = lod.map_or(Ok(()), ClothLod::validate);
+        let inputs = checked.map_err(ClothError::from).and(inputs);
         let outcome = inputs.and_then(|inputs| {
             if cloth.state.lod.action == LodAction::Stand {
                 skip(&mut cloth);
@@ -90,7 +91,7 @@ pub(crate) fn prepare_cloths(
         }
         // An asset that is being loaded is no fault.
         let outcome = match outcome {
-            Err(ClothError::MeshLoading) => Ok(()),
+            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
             outcome => outcome,
         };
         ClothFault::report(

@@ -9,7 +9,7 @@ use super::{
     source::Sources,
 };
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothParticles, Surface},
+    cloth::{ClothError, ClothMaterial, ClothParticles, ParticleError, Surface},
     plugin::state::{ClothBuilt, ClothState, Recipe, Shared, SharedParts, Stiffnesses},
 };
 
@@ -135,7 +135,7 @@ pub(super) fn follow_masses(
 pub(super) fn check_count(
     particles: &mut Mut<ClothParticles>,
     surface: &Surface,
-) -> Result<(), ClothError> {
+) -> Result<(), ParticleError> {
     if particles.matches(surface) {
         return Ok(());
     }
@@ -151,13 +151,13 @@ pub(super) fn check_count(
         return Ok(());
     }
     Err(if particles.len() == surface.len() {
-        ClothError::ParticleLayout {
+        ParticleError::Layout {
             cloth: surface.to_string(),
             columns: particles.columns(),
             rows: particles.rows(),
         }
     } else {
-        ClothError::ParticleCount {
+        ParticleError::Count {
             expected: surface.len(),
             found: particles.len(),
         }

@@ -10,7 +10,7 @@ use bevy::{
 
 use super::attach::Targets;
 use crate::{
-    cloth::{ClothError, ClothParticles},
+    cloth::{ClothError, ClothParticles, TargetError},
     plugin::{
         authoring::ClothAttachment,
         frame::{ClothFrame, global_transform, rigid},
@@ -32,7 +32,7 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
 /// velocities when it begins.
 ///
 /// # Errors
-/// [`ClothError::Transform`], [`ClothError::NoTransform`], and [`ClothError::NoTarget`] if the target of the first of
+/// [`Unusable`](crate::cloth::TransformError::Unusable), [`Missing`](crate::cloth::TransformError::Missing), and [`TargetError::NoTarget`] if the target of the first of
 /// `attachments` is gone or has no place.
 pub(crate) fn freeze(
     entity: Entity,
@@ -49,10 +49,10 @@ pub(crate) fn freeze(
             (Some(ClothAttachment { pin, .. }), Some(&target))
                 if state.attachments.given == attachments =>
             {
-                Err(ClothError::NoTarget {
+                Err(ClothError::Target(TargetError::NoTarget {
                     pin: format!("{pin:?}"),
                     target,
-                })
+                }))
             }
             // Released particles fall once the cloth moves again, and particles attached to other targets go there.
             _ => Ok(()),

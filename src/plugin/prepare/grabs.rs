@@ -21,7 +21,7 @@ use bevy::{
 
 use super::roots::Roots;
 use crate::{
-    cloth::{Cloth, ClothError, ClothParticles, Pin, Surface},
+    cloth::{Cloth, ClothError, ClothParticles, Pin, Surface, TargetError},
     plugin::{
         authoring::{ClothAttachments, ClothGrab, ClothGrip},
         frame::{ClothFrame, unusable},
@@ -112,9 +112,9 @@ pub(crate) fn hold_cloths(
         }
         let cloth = cloths.get(wanted).ok();
         let outcome = match cloth {
-            _ if hand.is_child || wanted == entity => Err(ClothError::HandNotAlone),
+            _ if hand.is_child || wanted == entity => Err(TargetError::HandNotAlone.into()),
             Some(cloth) => hand.hold(&cloth, time.delta_secs(), &mut holds, &mut commands),
-            None => Err(ClothError::NoSuchCloth { cloth: wanted }),
+            None => Err(TargetError::NoSuchCloth { cloth: wanted }.into()),
         };
         ClothFault::report(&mut commands, entity, hand.fault, Part::Grab, outcome);
     }

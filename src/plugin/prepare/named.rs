@@ -11,7 +11,7 @@ use bevy::ecs::{
     system::{Query, SystemParam},
 };
 
-use crate::{cloth::ClothError, plugin::authoring::ClothTarget};
+use crate::{cloth::TargetError, plugin::authoring::ClothTarget};
 
 /// Names of the entities that pass `F`, and the hierarchy.
 #[derive(SystemParam)]
@@ -27,7 +27,7 @@ impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
     /// for which `exists` holds, it is the one with the nearest common ancestor. Among equals it is the one with the lowest generation and index.
     ///
     /// # Errors
-    /// [`ClothError::NoTargetNamed`], with the text of a pin.
+    /// [`TargetError::NoTargetNamed`], with the text of a pin.
     pub fn find(
         &self,
         target: &ClothTarget,
@@ -35,7 +35,7 @@ impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
         known: Option<Entity>,
         exists: impl Fn(Entity) -> bool,
         pin: impl Fn() -> String,
-    ) -> Result<Entity, ClothError> {
+    ) -> Result<Entity, TargetError> {
         let name = match target {
             ClothTarget::Entity(entity) => return Ok(*entity),
             ClothTarget::Named(name) => name,
@@ -55,7 +55,7 @@ impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
         known
             .filter(is_so_called)
             .or_else(find)
-            .ok_or_else(|| ClothError::NoTargetNamed {
+            .ok_or_else(|| TargetError::NoTargetNamed {
                 pin: pin(),
                 name: name.clone(),
             })

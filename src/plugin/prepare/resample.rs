@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::{ClothError, ClothGrid, ClothParticles};
+use crate::cloth::{ClothGrid, ClothParticles, ParticleError};
 
 /// Largest difference of corners, as a fraction of the diagonal: more than the rounding of a spacing that is a
 /// quotient.
@@ -22,12 +22,12 @@ pub(crate) fn is_same_rectangle(a: &ClothGrid, b: &ClothGrid) -> bool {
 /// in rows and columns. Between, `relax` may move them: where a surface is twisted, the mean of its chains is shorter than they are.
 ///
 /// # Errors
-/// [`ClothError::NoSuchParticle`] if particles and grids are not each other's.
+/// [`ParticleError::NoSuchParticle`] if particles and grids are not each other's.
 pub(crate) fn resample(
     (old, from): (&ClothParticles, &ClothGrid),
     (new, to): (&mut ClothParticles, &ClothGrid),
     relax: impl FnOnce(&mut ClothParticles),
-) -> Result<(), ClothError> {
+) -> Result<(), ParticleError> {
     let between = |(row, column): (u32, u32), of: fn(&ClothParticles, usize) -> Option<Vec3>| {
         let (row, down) = place(row, to.rows(), from.rows());
         let (column, across) = place(column, to.columns(), from.columns());

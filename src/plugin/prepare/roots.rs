@@ -36,8 +36,8 @@ pub(crate) fn follow_roots(
     teleporting.0.clear();
     teleporting.0.extend(&marked);
     for (entity, inertia, mut motion) in &mut roots {
-        let place = places.of(entity).map(|place| rigid(&place.affine()));
-        let checked = inertia.validate().and(place).and_then(|place| {
+        let checked = inertia.validate().map_err(ClothError::from).and_then(|()| {
+            let place = rigid(&places.of(entity)?.affine());
             let is_finite = place.translation.is_finite() && place.rotation.is_finite();
             is_finite.then_some(place).ok_or_else(|| unusable(place))
         });

@@ -16,7 +16,7 @@ use bevy::{
 
 use super::{named::NamedTargets, neighbour::Neighbour};
 use crate::{
-    cloth::{Cloth, ClothError, SewnSide, Surface, stitches},
+    cloth::{Cloth, ClothError, SewnSide, Surface, TargetError, stitches},
     plugin::{
         authoring::{ClothSeam, ClothStitches, Ordered},
         frame::relative,
@@ -145,7 +145,7 @@ impl SeamQueryItem<'_, '_> {
         let mut is_ready = true;
         for (place, cloth) in of.into_iter().enumerate() {
             let Ok(item) = cloths.get(cloth) else {
-                return Err(ClothError::NoSuchCloth { cloth });
+                return Err(TargetError::NoSuchCloth { cloth }.into());
             };
             orders[place].0 = item.order.copied().unwrap_or_default();
             is_ready &= item.scratch.step.is_some() && item.built.matches(item.particles);

@@ -69,7 +69,7 @@ pub(crate) fn build_torn_ahead(
 /// Takes over other tears, or the change of a grid to a mesh and back. Particles keep their places, motion and indices, and new ones follow.
 ///
 /// # Errors
-/// [`ClothError::NoSuchEdge`]; the cloth stays as it was.
+/// [`NoSuchEdge`](crate::cloth::TearError::NoSuchEdge); the cloth stays as it was.
 pub(super) fn follow_tears(
     wanted: &BuildInputs,
     parts: &mut SharedParts,

@@ -12,7 +12,10 @@ use bevy::{
 
 use super::{recipe::Recipe, shared::Shared};
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothMaterialMap, StiffnessFactors, Surface, TriangleMesh},
+    cloth::{
+        ClothError, ClothMaterial, ClothMaterialMap, MeshError, StiffnessFactors, Surface,
+        TriangleMesh,
+    },
     plugin::threads::Threads,
 };
 
@@ -100,14 +103,14 @@ impl AsyncBuilds {
     /// Takes the data that is built of this recipe; `None` if nothing builds it. Its material may have changed since the request.
     ///
     /// # Errors
-    /// [`ClothError::MeshLoading`] until it is built; those of the surface, its grain, tears and map.
+    /// [`MeshError::Loading`] until it is built; those of the surface, its grain, tears and map.
     pub fn take(&mut self, recipe: &Recipe) -> Result<Option<Shared>, ClothError> {
         let Some(known) = self.all.iter().position(|known| known.recipe == *recipe) else {
             return Ok(None);
         };
         self.all[known].idle = 0;
         if !self.all[known].task.is_finished() {
-            return Err(ClothError::MeshLoading);
+            return Err(MeshError::Loading.into());
         }
         block_on(self.all.swap_remove(known).task).map(Some)
     }
@@ -153,7 +156,7 @@ impl AsyncBuilds {
             task: pool.spawn(async move {
                 if is_claimed.swap(true, Ordering::Relaxed) {
                     // Nobody waits for it.
-                    return Err(ClothError::MeshLoading);
+                    return Err(MeshError::Loading.into());
                 }
                 request.build(&mesh, &alike)
             }),

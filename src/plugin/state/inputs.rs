@@ -11,7 +11,7 @@ use bevy::{
 use crate::{
     cloth::{
         Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothSkin,
-        ClothTearing, ClothTears, Pins, Surface,
+        ClothTearing, ClothTears, Pins, QuantityError, Surface,
     },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
@@ -117,7 +117,7 @@ impl Inputs {
         }
         let gravity = settings.gravity.unwrap_or(gravity);
         for value in gravity.to_array() {
-            ClothError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
+            QuantityError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
         }
         Ok(Self {
             settings,

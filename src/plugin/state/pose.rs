@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{ClothError, ClothSkin, FARTHEST, Skinning, Surface},
+    cloth::{ClothError, ClothSkin, FARTHEST, SkinError, Skinning, Surface},
     plugin::frame::{ClothFrame, Shift, rigid},
 };
 
@@ -128,10 +128,10 @@ impl Pose {
             return Ok(());
         };
         if skinning.joints() > self.joints.len() {
-            return Err(ClothError::SkinJoints {
+            return Err(ClothError::Skin(SkinError::MissingJoints {
                 needed: skinning.joints(),
                 joints: self.joints.len(),
-            });
+            }));
         }
         skinning.places(&self.joints, &mut self.places);
         if with_normals {

@@ -57,7 +57,7 @@ impl Recipe {
     pub fn opened(&self, whole: Arc<Surface>) -> Result<Surface, ClothError> {
         match self.tears.edges() {
             [] if !self.as_mesh => Ok((*whole).clone()),
-            edges => whole.torn(edges),
+            edges => Ok(whole.torn(edges)?),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::{
     shared::{Shared, Stiffnesses},
 };
 use crate::{
-    cloth::{ClothError, ClothMaterial, StiffnessFactors, Surface, TriangleMesh},
+    cloth::{ClothError, ClothMaterial, MeshError, StiffnessFactors, Surface, TriangleMesh},
     plugin::threads::Threads,
 };
 
@@ -69,11 +69,11 @@ impl SharedParts {
     /// known already, or the request has a NaN: bad input is found at once.
     ///
     /// # Errors
-    /// [`ClothError::MeshLoading`] until it is built; that of `mesh`, and those of the surface, its grain, tears and map.
+    /// [`MeshError::Loading`] until it is built; that of `mesh`, and those of the surface, its grain, tears and map.
     pub fn get_built(
         &mut self,
         request: &BuildRequest,
-        mesh: impl FnOnce() -> Result<TriangleMesh, ClothError>,
+        mesh: impl FnOnce() -> Result<TriangleMesh, MeshError>,
     ) -> Result<Option<Arc<Shared>>, ClothError> {
         let recipe = &request.recipe;
         if recipe.has_nan() {
@@ -91,7 +91,7 @@ impl SharedParts {
             }
         }
         self.builds.begin(request.clone(), mesh()?, alike, None);
-        Err(ClothError::MeshLoading)
+        Err(MeshError::Loading.into())
     }
 
     /// Begins to build in the background what this cloth needs in its next tick, in place of what it needed before.

@@ -8,7 +8,7 @@ use bevy::{
 use fastnoise_lite::{FastNoiseLite, NoiseType};
 
 use crate::{
-    cloth::ClothError,
+    cloth::QuantityError,
     plugin::{
         authoring::{ClothAir, ClothWind, DENSITY, PlacedZone},
         frame::Shift,
@@ -35,7 +35,7 @@ pub(crate) struct WindField {
     seconds: f64,
     travelled: DVec3,
     /// The world's wind in the tick.
-    world: Option<Result<World, ClothError>>,
+    world: Option<Result<World, QuantityError>>,
 }
 
 /// The world's wind in a tick.
@@ -129,7 +129,7 @@ impl WindField {
     ///
     /// # Errors
     /// The first value that is out of range, of the world's wind if it blows here, or of the cloth's own.
-    pub fn of_cloth(&self, own: Option<&ClothAir>) -> Result<Option<EffectiveWind>, ClothError> {
+    pub fn of_cloth(&self, own: Option<&ClothAir>) -> Result<Option<EffectiveWind>, QuantityError> {
         if let Some(own) = own {
             own.validate()?;
         }

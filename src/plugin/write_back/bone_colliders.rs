@@ -18,7 +18,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::ClothError,
+    cloth::{ClothError, TargetError},
     contact::ClothCollider,
     plugin::{
         authoring::{BoneColliderOf, BoneColliders, ClothBone, ClothBones},
@@ -66,7 +66,10 @@ pub(crate) fn make_bone_colliders(
             let each = bones.iter().map(|bone| collider(bone, &names, &places));
             each.collect::<Result<Vec<_>, _>>()
         });
-        made.waits = matches!(colliders, None | Some(Err(ClothError::NoSuchBone { .. })));
+        made.waits = matches!(
+            colliders,
+            None | Some(Err(ClothError::Target(TargetError::NoSuchBone { .. })))
+        );
         let outcome = match colliders {
             // Its scene is on its way.
             None => Ok(()),
@@ -130,7 +133,7 @@ fn collider(
 ) -> Result<(Name, ClothCollider, Transform, ChildOf), ClothError> {
     let find = |name: &String| -> Result<(Entity, GlobalTransform), ClothError> {
         let found = names.get(name.as_str());
-        let entity = *found.ok_or_else(|| ClothError::NoSuchBone { name: name.clone() })?;
+        let entity = *found.ok_or_else(|| TargetError::NoSuchBone { name: name.clone() })?;
         Ok((entity, places.of(entity)?))
     };
     let (entity, place) = find(&bone.bone)?;

@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::ClothParticles,
+    cloth::{ClothError, ClothParticles},
     plugin::{
         naming::{Named, NamedItem, Part},
         state::{ClothFault, ClothState},
@@ -24,7 +24,7 @@ pub(crate) fn report_lost(
 ) {
     for (entity, state, particles) in &cloths {
         if !state.is_valid {
-            let outcome = particles.validate();
+            let outcome = particles.validate().map_err(ClothError::from);
             ClothFault::report(&mut commands, entity, None, Part::Cloth, outcome);
         }
     }

@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::{ClothError, Surface};
+use crate::cloth::{ClothError, MeshError, QuantityError, Surface};
 
 /// Mean pressure of the air at sea level (Pa), of the International Standard Atmosphere (ISO 2533).
 const ATMOSPHERE: f32 = 101_325.0;
@@ -55,25 +55,25 @@ impl ClothPressure {
     /// Checks that each value is in its range, and that `surface` encloses a volume.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`], and [`ClothError::NotClosed`].
+    /// [`QuantityError`], and [`MeshError::NotClosed`].
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         match *self {
             Self::Gauge(pressure) => {
                 let is_moderate = |p: f32| p.abs() <= 1.0e9;
                 let name = "gauge pressure (Pa)";
-                ClothError::check(pressure, is_moderate, name, "from −10⁹ to 10⁹")?;
+                QuantityError::check(pressure, is_moderate, name, "from −10⁹ to 10⁹")?;
             }
             Self::Gas { volume, outside } => {
                 let is_some = |of: f32| of > 0.0 && of <= 1.0e9;
                 let range = "above 0, up to 10⁹";
-                ClothError::check(volume, is_some, "volume of the gas (m³)", range)?;
-                ClothError::check(outside, is_some, "pressure outside (Pa)", range)?;
+                QuantityError::check(volume, is_some, "volume of the gas (m³)", range)?;
+                QuantityError::check(outside, is_some, "pressure outside (Pa)", range)?;
             }
         }
         if surface.is_closed() {
             Ok(())
         } else {
-            Err(ClothError::NotClosed)
+            Err(MeshError::NotClosed.into())
         }
     }
 }

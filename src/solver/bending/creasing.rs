@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::ClothError;
+use crate::cloth::QuantityError;
 
 /// Creases: cloth that is bent beyond its yield curvature keeps a part of that. Folded paper stays folded, a leather strap
 /// remembers the buckle. A cloth without this component springs back from any fold, and pays nothing.
@@ -56,11 +56,11 @@ impl ClothCreasing {
     /// Checks that each value is in its range.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for the first value that is out of range.
-    pub fn validate(&self) -> Result<(), ClothError> {
+    /// [`QuantityError`] for the first value that is out of range.
+    pub fn validate(&self) -> Result<(), QuantityError> {
         let is_positive = |of: f32| of > 0.0 && of.is_finite();
         let name = "yield curvature (1/m)";
-        ClothError::check(
+        QuantityError::check(
             self.yield_curvature,
             is_positive,
             name,
@@ -68,7 +68,7 @@ impl ClothCreasing {
         )?;
         let is_part = |of: f32| (0.0..1.0).contains(&of);
         let name = "hardening of creases";
-        ClothError::check(self.hardening, is_part, name, "from 0 to less than 1")?;
+        QuantityError::check(self.hardening, is_part, name, "from 0 to less than 1")?;
         Ok(())
     }
 

@@ -176,7 +176,10 @@ fn bad_skins_are_faults() {
         tick(&mut app, 2);
         let error = fault(&app, arm.skin);
         assert!(
-            matches!(error, Some(ClothError::Joint { joint: 1, .. })),
+            matches!(
+                error,
+                Some(ClothError::Skin(SkinError::Joint { joint: 1, .. }))
+            ),
             "{error:?}"
         );
         change::<Transform>(&mut app, arm.joints[1], |bone| *bone = elbow);
@@ -203,7 +206,10 @@ fn bad_skins_are_faults() {
     put(&mut app, plain);
     let error = fault(&app, arm.skin);
     assert!(
-        matches!(error, Some(ClothError::SkinJoints { .. })),
+        matches!(
+            error,
+            Some(ClothError::Skin(SkinError::MissingJoints { .. }))
+        ),
         "{error:?}"
     );
     put(&mut app, whole);

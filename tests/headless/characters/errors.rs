@@ -32,7 +32,7 @@ fn joints_that_are_no_more_are_faults() {
         tick(&mut app, 3);
         assert!(matches!(
             error(&app, &rig),
-            ClothError::Joint { joint: 2, .. }
+            ClothError::Skin(SkinError::Joint { joint: 2, .. })
         ));
         assert_eq!(simulated(&app, rig.cloth), still);
         change::<Transform>(&mut app, rig.bones[2], |bone| *bone = place);
@@ -54,7 +54,7 @@ fn joints_that_are_no_more_are_faults() {
     app.world_mut().entity_mut(rig.bones[2]).despawn();
     tick(&mut app, 2);
     assert!(
-        matches!(error(&app, &rig), ClothError::Joint { joint: 2, entity } if entity == rig.bones[2])
+        matches!(error(&app, &rig), ClothError::Skin(SkinError::Joint { joint: 2, entity }) if entity == rig.bones[2])
     );
 }
 
@@ -77,10 +77,10 @@ fn bind_poses_and_joints_have_to_be_there() {
     let mut two = known.clone();
     two.joints.truncate(2);
     skin(&mut app, two);
-    let few = ClothError::SkinJoints {
+    let few = ClothError::Skin(SkinError::MissingJoints {
         needed: 3,
         joints: 2,
-    };
+    });
     assert_eq!(error(&app, &rig), few);
     let mut poses = app
         .world_mut()
@@ -93,10 +93,10 @@ fn bind_poses_and_joints_have_to_be_there() {
     skin(&mut app, other(short));
     assert_eq!(error(&app, &rig), few);
     skin(&mut app, other(Handle::default()));
-    let none = ClothError::SkinJoints {
+    let none = ClothError::Skin(SkinError::MissingJoints {
         needed: 3,
         joints: 0,
-    };
+    });
     assert!(
         error(&app, &rig).to_string().contains("bind poses"),
         "{none}"
@@ -116,10 +116,13 @@ fn weights_have_to_be_weights() {
     let negative = skinned_sheet().with_inserted_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT, negative);
     let negative = rig_of(&mut app, negative, ClothSkin::default());
     tick(&mut app, 2);
-    assert!(matches!(error(&app, &bare), ClothError::SkinJoints { .. }));
+    assert!(matches!(
+        error(&app, &bare),
+        ClothError::Skin(SkinError::MissingJoints { .. })
+    ));
     assert!(matches!(
         error(&app, &negative),
-        ClothError::SkinWeights { .. }
+        ClothError::Skin(SkinError::Weights { .. })
     ));
     assert_eq!(fault(&app, good.cloth), None);
 }

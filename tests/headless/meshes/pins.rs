@@ -111,21 +111,24 @@ fn a_pin_that_is_wrong_is_named() {
         Pin::filter(|_, _| true),
     ] {
         let named = format!("{pin:?}");
-        assert_eq!(fault(pin), Some(ClothError::PinNeedsGrid { pin: named }));
+        assert_eq!(
+            fault(pin),
+            Some(ClothError::Pin(PinError::NeedsGrid { pin: named }))
+        );
     }
     let cloth = "25 particles of 30 vertices".to_string();
     for pin in [Pin::Vertex(30), Pin::Index(25)] {
-        let expected = ClothError::PinOutOfRange {
+        let expected = ClothError::Pin(PinError::OutOfRange {
             pin: format!("{pin:?}"),
             cloth: cloth.clone(),
-        };
+        });
         assert_eq!(fault(pin), Some(expected));
     }
     for pin in [Pin::attribute("Weight", 0, 0.5), Pin::color(4, 0.5)] {
-        let Some(ClothError::NoSuchAttribute {
+        let Some(ClothError::Pin(PinError::NoSuchAttribute {
             pin: named,
             attributes,
-        }) = fault(pin.clone())
+        })) = fault(pin.clone())
         else {
             panic!("{pin:?}");
         };
@@ -145,7 +148,10 @@ fn a_pin_that_is_wrong_is_named() {
         Pin::attribute("Stiffness", 1, 0.0),
     ] {
         let named = format!("{pin:?}");
-        assert_eq!(fault(pin), Some(ClothError::PinFindsNothing { pin: named }));
+        assert_eq!(
+            fault(pin),
+            Some(ClothError::Pin(PinError::FindsNothing { pin: named }))
+        );
     }
 }
 
@@ -163,7 +169,7 @@ fn a_vertex_of_no_triangle_is_out_of_range() {
     tick(&mut app, 2);
     let fault = fault(&app, cloth);
     assert!(
-        matches!(fault, Some(ClothError::PinOutOfRange { .. })),
+        matches!(fault, Some(ClothError::Pin(PinError::OutOfRange { .. }))),
         "{fault:?}"
     );
     change::<Pins>(&mut app, cloth, |pins| *pins = Pins::new([Pin::Vertex(8)]));
@@ -188,10 +194,10 @@ fn a_target_is_known_by_its_name() {
     let attached = ClothAttachments::new([(pin.clone(), "shoulders")]);
     let cloth = spawn(&mut app, &handle, attached);
     tick(&mut app, 3);
-    let missing = Some(ClothError::NoTargetNamed {
+    let missing = Some(ClothError::Target(TargetError::NoTargetNamed {
         pin: format!("{pin:?}"),
         name: "shoulders".into(),
-    });
+    }));
     assert_eq!(fault(&app, cloth), missing);
     // One that is nowhere is none.
     let target = app.world_mut().spawn(Name::new("shoulders")).id();

@@ -40,49 +40,55 @@ fn what_is_no_cloth_is_named() {
         let error = refused(lines(topology));
         assert_eq!(
             error,
-            ClothError::MeshTopology {
+            ClothError::Mesh(MeshError::Topology {
                 topology: name.into()
-            }
+            })
         );
     }
     let (positions, triangles) = sheet(3, 3);
     let mut without = asset(&positions, &triangles);
     without.remove_attribute(Mesh::ATTRIBUTE_POSITION);
-    assert_eq!(refused(without), ClothError::MeshWithoutPositions);
+    assert_eq!(refused(without), MeshError::WithoutPositions.into());
 
     let left_over = asset(&positions, &triangles);
     let left_over = left_over.with_inserted_indices(Indices::U32(vec![0, 1, 3, 4]));
     assert_eq!(
         refused(left_over),
-        ClothError::MeshIndexCount { indices: 4 }
+        MeshError::IndexCount { indices: 4 }.into()
     );
 
     let mut nowhere = positions.clone();
     nowhere[5].z = f32::NAN;
     let error = refused(asset(&nowhere, &triangles));
     assert!(
-        matches!(error, ClothError::VertexNotFinite { vertex: 5, .. }),
+        matches!(
+            error,
+            ClothError::Mesh(MeshError::VertexNotFinite { vertex: 5, .. })
+        ),
         "{error}"
     );
     nowhere[5].z = f32::INFINITY;
     let error = refused(asset(&nowhere, &triangles));
     assert!(
-        matches!(error, ClothError::VertexNotFinite { vertex: 5, .. }),
+        matches!(
+            error,
+            ClothError::Mesh(MeshError::VertexNotFinite { vertex: 5, .. })
+        ),
         "{error}"
     );
 
     let mut beyond = triangles.clone();
     beyond[3][1] = 9;
-    let expected = ClothError::TriangleOutOfRange {
+    let expected = ClothError::Mesh(MeshError::TriangleOutOfRange {
         triangle: 3,
         corners: beyond[3],
         vertices: 9,
-    };
+    });
     assert_eq!(refused(asset(&positions, &beyond)), expected);
 
     let flat: Vec<Vec3> = (0..9).map(|x| Vec3::X * x as f32).collect();
     let error = refused(asset(&flat, &triangles));
-    assert_eq!(error, ClothError::MeshWithoutArea { triangles: 8 });
+    assert_eq!(error, MeshError::WithoutArea { triangles: 8 }.into());
 }
 
 /// A million vertices in a million places; and more vertices than are even looked at, all in one place.
@@ -104,13 +110,13 @@ fn a_mesh_may_be_too_large() {
     let error = refused(listed((0..COUNT).map(place).collect()));
     assert_eq!(
         error,
-        ClothError::MeshTooLarge {
+        ClothError::Mesh(MeshError::TooLarge {
             particles: COUNT as usize
-        }
+        })
     );
     let more = 8 * MAX_MESH_PARTICLES + 1;
     let error = refused(listed(vec![[0.0; 3]; more]));
-    assert_eq!(error, ClothError::MeshTooLarge { particles: more });
+    assert_eq!(error, MeshError::TooLarge { particles: more }.into());
 }
 
 /// What is in the render world alone can't be read; one that is in both can.
@@ -119,7 +125,7 @@ fn what_the_renderer_took_is_not_readable() {
     let mut taken = sheet_asset(3, 3);
     taken.asset_usage = RenderAssetUsages::RENDER_WORLD;
     taken.take_gpu_data().expect("it was there");
-    assert_eq!(refused(taken), ClothError::MeshNotReadable);
+    assert_eq!(refused(taken), MeshError::NotReadable.into());
 }
 
 /// Taken after the cloth was built, it matters no more: it is drawn and moves on.
@@ -175,7 +181,7 @@ fn a_weld_that_is_no_distance_is_named() {
         tick(&mut app, 1);
         let fault = fault(&app, cloth);
         assert!(
-            matches!(fault, Some(ClothError::Quantity { .. })),
+            matches!(fault, Some(ClothError::Mesh(MeshError::Quantity(_)))),
             "{fault:?}"
         );
     }

@@ -90,7 +90,7 @@ fn a_file_that_is_not_there_is_a_fault() {
     tick(&mut app, 1);
     let fault = fault(&app, cloth);
     assert!(
-        matches!(&fault, Some(ClothError::MeshFailed { reason }) if reason.contains("nothing.glb")),
+        matches!(&fault, Some(ClothError::Mesh(MeshError::Failed { reason })) if reason.contains("nothing.glb")),
         "{fault:?}"
     );
 }
@@ -100,7 +100,10 @@ fn without_a_mesh_there_is_nothing_until_one_comes() {
     let mut app = app_that_draws(FixedUpdate);
     let cloth = app.world_mut().spawn(Cloth::mesh()).id();
     tick(&mut app, 3);
-    assert_eq!(fault(&app, cloth), Some(ClothError::MeshNotLoaded));
+    assert_eq!(
+        fault(&app, cloth),
+        Some(ClothError::Mesh(MeshError::NotLoaded))
+    );
     let handle = add(&mut app, sheet_asset(3, 3));
     app.world_mut().entity_mut(cloth).insert(Mesh3d(handle));
     tick(&mut app, 3);
@@ -180,7 +183,7 @@ fn an_edit_may_break_and_mend() {
     edit(&mut app, asset(&[Vec3::X; 3], &[[0, 1, 2]]));
     assert_eq!(
         fault(&app, cloth),
-        Some(ClothError::MeshWithoutArea { triangles: 1 })
+        Some(ClothError::Mesh(MeshError::WithoutArea { triangles: 1 }))
     );
     edit(&mut app, sheet_asset(2, 2));
     assert_eq!(fault(&app, cloth), None);
@@ -198,7 +201,10 @@ fn triangles_need_no_assets() {
     let asked = app.world_mut().spawn(Cloth::mesh()).id();
     tick(&mut app, 128);
     assert_eq!(fault(&app, cloth), None);
-    assert_eq!(fault(&app, asked), Some(ClothError::MeshNotLoaded));
+    assert_eq!(
+        fault(&app, asked),
+        Some(ClothError::Mesh(MeshError::NotLoaded))
+    );
     let places = by_vertex(&app, cloth);
     assert_eq!(places.len(), 36);
     for (vertex, place) in places.into_iter().enumerate() {

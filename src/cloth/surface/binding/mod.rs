@@ -20,8 +20,9 @@ use parry3d::{query::PointQueryWithLocation, shape::TriMesh};
 use super::{
     Surface,
     bound::{Bound, Eight, Frame, write_eights},
+    triangles::MeshError,
 };
-use crate::cloth::{error::ClothError, lanes::LANES, limits::FARTHEST};
+use crate::cloth::{lanes::LANES, limits::FARTHEST};
 
 /// The least tangential part of a tangent, as a fraction, for the frame to follow it.
 const LEAST_ALONG: f32 = 0.1;
@@ -39,18 +40,18 @@ impl SurfaceBinding {
     /// one tangent for each vertex or none at all.
     ///
     /// # Errors
-    /// [`ClothError::VertexNotFinite`] for the first vertex that is not finite. [`ClothError::BoundTooFar`] for a
-    /// vertex farther from the surface than the surface's diagonal. [`ClothError::MeshWithoutArea`] for a surface
+    /// [`MeshError::VertexNotFinite`] for the first vertex that is not finite. [`MeshError::BoundTooFar`] for a
+    /// vertex farther from the surface than the surface's diagonal. [`MeshError::WithoutArea`] for a surface
     /// without faces.
     pub fn new(
         surface: &Surface,
         positions: &[Vec3],
         normals: &[Vec3],
         tangents: &[Vec3],
-    ) -> Result<Self, ClothError> {
+    ) -> Result<Self, MeshError> {
         let is_beyond = |at: &Vec3| !(at.is_finite() && at.abs().max_element() < FARTHEST);
         if let Some(vertex) = positions.iter().position(is_beyond) {
-            return Err(ClothError::VertexNotFinite {
+            return Err(MeshError::VertexNotFinite {
                 vertex,
                 position: positions[vertex],
             });
@@ -58,7 +59,7 @@ impl SurfaceBinding {
         let rest = surface.rest_positions();
         let faces = surface.triangles();
         let mesh = TriMesh::new(rest.to_vec(), faces.to_vec());
-        let mesh = mesh.map_err(|_| ClothError::MeshWithoutArea {
+        let mesh = mesh.map_err(|_| MeshError::WithoutArea {
             triangles: faces.len(),
         })?;
         let mut at_rest = Vec::new();
@@ -70,7 +71,7 @@ impl SurfaceBinding {
                 mesh.project_local_point_and_get_location(position, false);
             let distance = nearest.point.distance(position);
             if distance.is_nan() || distance > surface.diagonal() {
-                return Err(ClothError::BoundTooFar {
+                return Err(MeshError::BoundTooFar {
                     vertex,
                     distance,
                     farthest: surface.diagonal(),

@@ -217,17 +217,17 @@ fn refuses_what_is_far_or_not_finite() {
     assert!(bind(Vec3::Y * 0.5).is_ok_and(|binding| !binding.has_tangents()));
     let far = bind(Vec3::Y * 2.0);
     assert!(
-        matches!(far, Err(ClothError::BoundTooFar { vertex: 1, .. })),
+        matches!(far, Err(MeshError::BoundTooFar { vertex: 1, .. })),
         "{far:?}"
     );
     let nan = bind(Vec3::NAN);
     assert!(
-        matches!(nan, Err(ClothError::VertexNotFinite { vertex: 1, .. })),
+        matches!(nan, Err(MeshError::VertexNotFinite { vertex: 1, .. })),
         "{nan:?}"
     );
     let none = SurfaceBinding::new(&Surface::default(), &[Vec3::ZERO], &[Vec3::Y], &[]);
     assert!(
-        matches!(none, Err(ClothError::MeshWithoutArea { .. })),
+        matches!(none, Err(MeshError::WithoutArea { .. })),
         "{none:?}"
     );
 }

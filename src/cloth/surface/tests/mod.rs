@@ -5,7 +5,7 @@ mod torn;
 use bevy::math::Vec3;
 
 use super::*;
-use crate::cloth::{error::ClothError, recipe::Cloth};
+use crate::cloth::recipe::Cloth;
 
 /// A unit square of two triangles, each with corners of its own.
 fn square() -> TriangleMesh {
@@ -66,11 +66,11 @@ fn what_is_no_surface_is_refused() {
     };
     assert!(matches!(
         refused(|mesh| mesh.positions[4].y = f32::NAN),
-        ClothError::VertexNotFinite { vertex: 4, .. }
+        MeshError::VertexNotFinite { vertex: 4, .. }
     ));
     assert!(matches!(
         refused(|mesh| mesh.triangles[1][2] = 6),
-        ClothError::TriangleOutOfRange {
+        MeshError::TriangleOutOfRange {
             triangle: 1,
             vertices: 6,
             ..
@@ -78,10 +78,10 @@ fn what_is_no_surface_is_refused() {
     ));
     assert!(matches!(
         refused(|mesh| mesh.triangles.clear()),
-        ClothError::MeshWithoutArea { triangles: 0 }
+        MeshError::WithoutArea { triangles: 0 }
     ));
     assert!(matches!(
         refused(|mesh| mesh.positions.fill(Vec3::X)),
-        ClothError::MeshWithoutArea { triangles: 2 }
+        MeshError::WithoutArea { triangles: 2 }
     ));
 }

@@ -283,7 +283,7 @@ fn an_edge_that_is_none_is_named() {
     for edge in [[0, 17], [3, 3], [0, 4_000], [9, 8]] {
         assert_eq!(
             grid().torn(&[[0, 1], edge]).err(),
-            Some(ClothError::NoSuchEdge { edge })
+            Some(TearError::NoSuchEdge { edge })
         );
     }
 }

@@ -28,31 +28,49 @@ pub(crate) use stencils::GridStencil;
 
 use std::sync::{Arc, OnceLock};
 
-use bevy::math::{DVec3, Vec3};
 #[cfg(feature = "mesh")]
 use bevy::platform::collections::HashMap;
+use bevy::{
+    math::{DVec3, Vec3},
+    reflect::Reflect,
+};
+use thiserror::Error;
 
 use super::{
     Derived, Extent, Faces, Surface, Torn, incidence::Incidence, springs::face_area,
     triangles::VertexAttribute,
 };
-use crate::cloth::{error::ClothError, grid::ClothGrid};
+use crate::cloth::grid::ClothGrid;
 
 /// How far a cut moves its sides apart, each, as a fraction of the way to the middle of the faces beside it.
 const HALF_WIDTH: f32 = 0.02;
+
+/// The reason why a cloth can't be torn.
+#[derive(Reflect, Debug, Clone, PartialEq, Error)]
+#[type_path = "bevy_drape"]
+#[reflect(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum TearError {
+    /// A tear runs along no edge of the cloth.
+    #[error("no edge of the cloth joins the particles {edge:?}, along which it is torn")]
+    NoSuchEdge {
+        /// Indices of its ends in the whole cloth.
+        edge: [u32; 2],
+    },
+}
 
 impl Surface {
     /// This surface, torn along edges of the whole surface, in the order in which they were torn. The smaller index of
     /// an edge's ends comes first.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchEdge`] for the first that is no edge.
-    pub(crate) fn torn(self: &Arc<Self>, edges: &[[u32; 2]]) -> Result<Self, ClothError> {
+    /// [`TearError::NoSuchEdge`] for the first that is no edge.
+    pub(crate) fn torn(self: &Arc<Self>, edges: &[[u32; 2]]) -> Result<Self, TearError> {
         let whole = self.whole();
         let incidence = whole.incidence();
         let is_edge = |ends: &[u32; 2]| !incidence.at(*ends).is_empty();
         if let Some(edge) = edges.iter().find(|edge| !is_edge(edge)) {
-            return Err(ClothError::NoSuchEdge { edge: *edge });
+            return Err(TearError::NoSuchEdge { edge: *edge });
         }
         let torn = Torn::new(&whole, edges);
         Ok(torn.surface(edges))

@@ -13,7 +13,7 @@ use super::{
     shape::ColliderShape,
     source::{SharedCollider, check_scale},
 };
-use crate::cloth::{ClothError, FARTHEST};
+use crate::cloth::{ClothError, FARTHEST, MeshError, QuantityError, ShapeError};
 
 /// A collider for cloth at the entity's [`Transform`]. Every cloth collides with it, unless
 /// [`ClothLayers`](crate::contact::ClothLayers) exclude it. Move it however you like. Cloth pushes it back only if it has a
@@ -210,15 +210,15 @@ impl ClothCollider {
     /// capsule.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] for a length that is zero, negative or not finite, before or after scaling; a capsule's
-    /// length may be zero. [`ClothError::MeshNotLoaded`] for a mesh, because only the plugin can access the assets.
+    /// [`QuantityError`] for a length that is zero, negative or not finite, before or after scaling; a capsule's
+    /// length may be zero. [`MeshError::NotLoaded`] for a mesh, because only the plugin can access the assets.
     /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let sizes = Scale(scale.abs());
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
             Self::Compound(ref parts) => compound(parts, scale),
-            Self::Mesh(_) => Err(ClothError::MeshNotLoaded),
+            Self::Mesh(_) => Err(MeshError::NotLoaded.into()),
             Self::Cylinder {
                 radius,
                 half_height,
@@ -252,7 +252,7 @@ impl ClothCollider {
                     "the capsule's scaled radius (m)",
                 ];
                 let radius = sizes.across(radius, names)?;
-                let half_length = ClothError::check(
+                let half_length = QuantityError::check(
                     half_length * sizes.0.y,
                     |v| v >= 0.0 && v.is_finite(),
                     "half of the capsule's scaled length (m)",
@@ -303,10 +303,10 @@ const CONE: RoundNames = [
 ];
 
 /// A length under a scale, checked before and after scaling. `names` are the names of both.
-fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
+fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, QuantityError> {
     let positive = |v: f32| v > 0.0 && v.is_finite();
-    ClothError::check(value, positive, names[0], "positive")?;
-    ClothError::check(value * scale, positive, names[1], "positive")
+    QuantityError::check(value, positive, names[0], "positive")?;
+    QuantityError::check(value * scale, positive, names[1], "positive")
 }
 
 /// The scale of a shape along each axis, mirrored or not.
@@ -314,7 +314,7 @@ struct Scale(Vec3);
 
 impl Scale {
     /// A radius about the y axis, scaled by the larger of x and z.
-    fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
+    fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, QuantityError> {
         length(radius, self.0.x.max(self.0.z), names)
     }
 
@@ -324,7 +324,7 @@ impl Scale {
         radius: f32,
         half_height: f32,
         names: &RoundNames,
-    ) -> Result<(f32, f32), ClothError> {
+    ) -> Result<(f32, f32), QuantityError> {
         let radius = self.across(radius, names[0])?;
         Ok((radius, length(half_height, self.0.y, names[1])?))
     }
@@ -337,9 +337,9 @@ fn compound(
 ) -> Result<ColliderShape, ClothError> {
     check_scale(scale)?;
     let no_such = |shape: &str| {
-        Err(ClothError::NoSuchShape {
+        Err(ClothError::Shape(ShapeError::NoSuchShape {
             shape: shape.to_string(),
-        })
+        }))
     };
     if children.is_empty() {
         return no_such("an empty compound");
@@ -353,7 +353,7 @@ fn compound(
         }
         // Rotating and then stretching along one axis would shear the part.
         if !is_even && !pose.rotation.is_near_identity() {
-            return Err(ClothError::SkewedPart { scale });
+            return Err(ShapeError::SkewedPart { scale }.into());
         }
         let place = Vec3::from(pose.translation) * scale;
         let pose = Isometry3d::new(place, pose.rotation) * child.offset();
@@ -381,8 +381,8 @@ fn compound(
 /// The pose of a compound's part, with a normalized rotation.
 ///
 /// # Errors
-/// [`ClothError::PartPose`] for an invalid position or rotation.
-fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ClothError> {
+/// [`ShapeError::PartPose`] for an invalid position or rotation.
+fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ShapeError> {
     let place = Vec3::from(pose.translation);
     let rotation = pose.rotation.normalize();
     // Not by the largest element, which ignores NaN.
@@ -390,7 +390,7 @@ fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ClothError> {
     if is_in_reach && rotation.is_finite() && rotation.is_normalized() {
         Ok(Isometry3d::new(place, rotation))
     } else {
-        Err(ClothError::PartPose {
+        Err(ShapeError::PartPose {
             part,
             place,
             rotation: format!("{:?}", pose.rotation),

@@ -72,7 +72,10 @@ fn parts_of_a_compound_are_checked() {
     ] {
         let outcome = at(place, rotation);
         assert!(
-            matches!(outcome, Err(ClothError::PartPose { part: 1, .. })),
+            matches!(
+                outcome,
+                Err(ClothError::Shape(ShapeError::PartPose { part: 1, .. }))
+            ),
             "{place} {rotation}: {outcome:?}"
         );
     }
@@ -87,7 +90,7 @@ fn a_mesh_asset_is_no_part() {
     let outcome =
         ClothCollider::compound([(Isometry3d::IDENTITY, ClothCollider::mesh())]).scaled(Vec3::ONE);
     assert!(
-        matches!(&outcome, Err(ClothError::NoSuchShape { shape }) if shape.contains("Mesh3d")),
+        matches!(&outcome, Err(ClothError::Shape(ShapeError::NoSuchShape { shape })) if shape.contains("Mesh3d")),
         "{outcome:?}"
     );
 }

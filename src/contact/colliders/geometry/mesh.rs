@@ -7,7 +7,7 @@ use super::{
     edges::{MeshEdges, SharpEdge},
     solid::MeshSides,
 };
-use crate::cloth::{ClothError, FARTHEST};
+use crate::cloth::{FARTHEST, MeshError};
 
 /// A mesh, its inside, and its sharp edges.
 pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
@@ -15,11 +15,11 @@ pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
 /// Checks that all vertices are finite and in range.
 ///
 /// # Errors
-/// [`ClothError::VertexNotFinite`] for the first invalid one.
-pub(crate) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothError> {
+/// [`MeshError::VertexNotFinite`] for the first invalid one.
+pub(crate) fn check_vertices(vertices: &[Vec3]) -> Result<(), MeshError> {
     let is_beyond = |vertex: &Vec3| !(vertex.is_finite() && vertex.abs().max_element() < FARTHEST);
     match vertices.iter().position(is_beyond) {
-        Some(vertex) => Err(ClothError::VertexNotFinite {
+        Some(vertex) => Err(MeshError::VertexNotFinite {
             vertex,
             position: vertices[vertex],
         }),
@@ -34,7 +34,7 @@ pub(crate) fn check_vertices(vertices: &[Vec3]) -> Result<(), ClothError> {
 pub(in crate::contact::colliders) fn check_triangles(
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
-) -> Result<(), ClothError> {
+) -> Result<(), MeshError> {
     check_vertices(vertices)?;
     let is_beyond = |triangle: &[u32; 3]| {
         triangle
@@ -42,7 +42,7 @@ pub(in crate::contact::colliders) fn check_triangles(
             .any(|&corner| corner as usize >= vertices.len())
     };
     if let Some(triangle) = triangles.iter().position(is_beyond) {
-        return Err(ClothError::TriangleOutOfRange {
+        return Err(MeshError::TriangleOutOfRange {
             triangle,
             corners: triangles[triangle],
             vertices: vertices.len(),
@@ -56,7 +56,7 @@ pub(in crate::contact::colliders) fn check_triangles(
         })
         .sum();
     if area <= 0.0 {
-        return Err(ClothError::MeshWithoutArea {
+        return Err(MeshError::WithoutArea {
             triangles: triangles.len(),
         });
     }
@@ -71,7 +71,7 @@ pub(crate) fn build(
     mut vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     ground: bool,
-) -> Result<Built, ClothError> {
+) -> Result<Built, MeshError> {
     let count = triangles.len();
     check_triangles(&vertices, &triangles)?;
     // Merges equal vertices: −0 equals 0.
@@ -80,7 +80,7 @@ pub(crate) fn build(
         | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
         | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
     let Ok(mut mesh) = TriMesh::with_flags(vertices, triangles, welded) else {
-        return Err(ClothError::MeshWithoutArea { triangles: count });
+        return Err(MeshError::WithoutArea { triangles: count });
     };
     let edges = MeshEdges::of(mesh.indices());
     let sides = if ground {

@@ -13,7 +13,7 @@ use super::{
     mesh,
     solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
 };
-use crate::cloth::ClothError;
+use crate::cloth::{ClothError, MeshError, ShapeError};
 
 /// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
 /// most 0.2 % of the radius below.
@@ -63,7 +63,7 @@ impl Parts {
     /// Adds the closed mesh of a convex shape.
     ///
     /// # Errors
-    /// [`ClothError::FlatHull`] if it has no volume.
+    /// [`ShapeError::FlatHull`] if it has no volume.
     fn add_hull(&mut self, pose: Pose, triangles: Triangles) -> Result<(), ClothError> {
         let points = triangles.0.len();
         let (mesh, sides, edges) = mesh::build(triangles.0, triangles.1, false)?;
@@ -71,7 +71,7 @@ impl Parts {
         if sides != MeshSides::Closed
             || mesh::volume(mesh.vertices(), mesh.indices()) <= 1.0e-9 * size.powi(3)
         {
-            return Err(ClothError::FlatHull { points });
+            return Err(ShapeError::FlatHull { points }.into());
         }
         self.add_built(pose, mesh.into(), sides);
         self.add_edges(pose, &edges, 0.0);
@@ -81,12 +81,12 @@ impl Parts {
     /// Adds the convex hull of points.
     ///
     /// # Errors
-    /// [`ClothError::FlatHull`] of points in one plane, [`ClothError::VertexNotFinite`].
+    /// [`ShapeError::FlatHull`] of points in one plane, [`MeshError::VertexNotFinite`].
     pub fn add_hull_of(&mut self, points: &[Vec3]) -> Result<(), ClothError> {
         mesh::check_vertices(points)?;
-        let flat = ClothError::FlatHull {
+        let flat = ClothError::Shape(ShapeError::FlatHull {
             points: points.len(),
-        };
+        });
         if are_flat(points) {
             return Err(flat);
         }
@@ -172,7 +172,7 @@ impl Parts {
     /// Adds a shape of parry with a pose.
     ///
     /// # Errors
-    /// [`ClothError::NoSuchShape`] for lines, for a half-space in a compound, and for custom shapes; errors of its
+    /// [`ShapeError::NoSuchShape`] for lines, for a half-space in a compound, and for custom shapes; errors of its
     /// triangles.
     pub fn add(&mut self, pose: Pose, shared: &SharedShape) -> Result<(), ClothError> {
         let shape = shared.clone();
@@ -244,9 +244,9 @@ impl Parts {
                 self.add_round(pose, shape, inner, round.border_radius)?;
             }
             TypedShape::Polyline(_) | TypedShape::HalfSpace(_) | TypedShape::Custom(_) => {
-                return Err(ClothError::NoSuchShape {
+                return Err(ClothError::Shape(ShapeError::NoSuchShape {
                     shape: format!("{:?}", shared.shape_type()),
-                });
+                }));
             }
         }
         Ok(())
@@ -255,7 +255,7 @@ impl Parts {
 
 fn build(
     (vertices, triangles): Triangles,
-) -> Result<(TriMesh, MeshSides, Vec<SharpEdge>), ClothError> {
+) -> Result<(TriMesh, MeshSides, Vec<SharpEdge>), MeshError> {
     mesh::build(vertices, triangles, false)
 }
 

@@ -33,7 +33,7 @@ impl Driven {
     /// copy of the asset that is drawn.
     ///
     /// # Errors
-    /// The error of the asset or of a transform, or [`ClothError::BoundTooFar`].
+    /// The error of the asset or of a transform, or [`BoundTooFar`](crate::cloth::MeshError::BoundTooFar).
     pub fn new(
         asset: &Mesh,
         surface: &Surface,

@@ -27,7 +27,7 @@ use bevy::{
 
 use super::mesh::{MeshDrawing, MeshSystems};
 use crate::{
-    cloth::{Cloth, ClothError, Surface},
+    cloth::{Cloth, ClothError, MeshError, Surface, TargetError},
     plugin::{
         naming::Part,
         state::{ClothBuilt, ClothFault},
@@ -220,11 +220,11 @@ fn bind(
             }
             // It gets its components with the next tick.
             _ if cloths.contains(cloth) => continue,
-            _ => Err(ClothError::NoSuchCloth { cloth }),
+            _ => Err(TargetError::NoSuchCloth { cloth }.into()),
         };
         // A mesh that is being loaded is no fault.
         let outcome = match outcome {
-            Err(ClothError::MeshLoading) => Ok(()),
+            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
             outcome => outcome,
         };
         let part = Part::RenderMesh;
@@ -246,15 +246,15 @@ impl BindingItem<'_, '_> {
         let other = self.mesh.map(|mesh| &mesh.0);
         let other = other.filter(|mesh| self.state.is_none_or(|state| state.handle != **mesh));
         let source = other.or(self.state.map(|state| &state.source));
-        let source = source.ok_or(ClothError::MeshNotLoaded)?.clone();
+        let source = source.ok_or(MeshError::NotLoaded)?.clone();
         let Some(asset) = meshes.get(&source) else {
             return Err(
                 match server.and_then(|server| server.get_load_state(&source)) {
-                    Some(LoadState::Failed(error)) => ClothError::MeshFailed {
+                    Some(LoadState::Failed(error)) => ClothError::Mesh(MeshError::Failed {
                         reason: error.to_string(),
-                    },
-                    Some(LoadState::Loading) => ClothError::MeshLoading,
-                    _ => ClothError::MeshNotLoaded,
+                    }),
+                    Some(LoadState::Loading) => ClothError::Mesh(MeshError::Loading),
+                    _ => ClothError::Mesh(MeshError::NotLoaded),
                 },
             );
         };

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::skinned::SkinnedPose;
 use crate::{
-    cloth::{ClothError, FARTHEST},
+    cloth::{ClothError, FARTHEST, QuantityError},
     contact::{ClothCollider, ColliderShape},
     plugin::{prepare::source::ColliderMeshes, state::Source},
 };
@@ -58,7 +58,7 @@ impl BuiltShape {
     /// The shape of a skinned collider.
     ///
     /// # Errors
-    /// [`ClothError::Quantity`] if it is too large.
+    /// [`QuantityError`] if it is too large.
     pub fn skinned(collider: &ClothCollider, pose: SkinnedPose) -> Result<Self, ClothError> {
         let shape = ColliderShape::Deforming(pose.mesh);
         check_extent(&shape)?;
@@ -88,6 +88,6 @@ impl BuiltShape {
 fn check_extent(shape: &ColliderShape) -> Result<(), ClothError> {
     let is_in_reach = |extent: f32| extent <= FARTHEST;
     let (size, most) = ("the collider's size (m)", "at most 10¹²");
-    ClothError::check(shape.extent(), is_in_reach, size, most)?;
+    QuantityError::check(shape.extent(), is_in_reach, size, most)?;
     Ok(())
 }

@@ -15,7 +15,7 @@ use super::{
     tree::ColliderTree,
 };
 use crate::{
-    cloth::ClothError,
+    cloth::{ClothError, MeshError},
     contact::ClothCollider,
     plugin::{
         authoring::ClothBody,
@@ -67,7 +67,7 @@ pub(crate) fn prepare_colliders(
         }
         // A mesh that is being loaded is no fault.
         let outcome = match outcome {
-            Err(ClothError::MeshLoading) => Ok(()),
+            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
             outcome => outcome,
         };
         ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{ClothError, FARTHEST},
+    cloth::{ClothError, FARTHEST, MeshError, SkinError},
     contact::{ClothCollider, DeformingMesh, SkinnedTriangles},
     plugin::{
         frame::{Places, Shift, rigid, unusable},
@@ -58,7 +58,7 @@ impl SkinnedMotion {
         }
         let known = self.triangles.as_ref().map(|(source, _)| *source);
         let source = meshes.find(entity, collider, known)?;
-        let source = source.ok_or(ClothError::MeshNotLoaded)?;
+        let source = source.ok_or(MeshError::NotLoaded)?;
         let known = self.triangles.take().filter(|(known, _)| *known == source);
         let (_, triangles) = match known {
             Some(known) => self.triangles.insert(known),
@@ -69,7 +69,7 @@ impl SkinnedMotion {
         };
         let (needed, joints) = (triangles.joints(), self.now.len());
         if needed > joints {
-            return Err(ClothError::SkinJoints { needed, joints });
+            return Err(SkinError::MissingJoints { needed, joints }.into());
         }
         let place = take_to_frame(&mut self.now, triangles.carrier())?;
         let begins = self.last.len() != joints;
@@ -146,7 +146,7 @@ impl SkinnedMotion {
 /// frame.
 ///
 /// # Errors
-/// [`ClothError::Transform`] if that joint is too far away.
+/// [`Unusable`](crate::cloth::TransformError::Unusable) if that joint is too far away.
 fn take_to_frame(joints: &mut [Affine3A], carrier: usize) -> Result<Isometry3d, ClothError> {
     let carrier = joints[carrier];
     let place = rigid(&carrier);

@@ -13,7 +13,8 @@ use bevy::{
 
 use crate::{
     cloth::{
-        Cloth, ClothError, ClothShape, JointWeights, Skinning, Surface, TriangleMesh, skin_of_asset,
+        Cloth, ClothError, ClothShape, JointWeights, MeshError, SkinError, Skinning, Surface,
+        TriangleMesh, skin_of_asset,
     },
     contact::SkinnedTriangles,
     plugin::{
@@ -41,12 +42,12 @@ impl ChangedMeshes {
 /// The joints and weights of a mesh's vertices.
 ///
 /// # Errors
-/// [`ClothError::SkinJoints`] if it names no joints.
+/// [`SkinError::MissingJoints`] if it names no joints.
 fn skin_of(mesh: &Mesh) -> Result<Vec<JointWeights>, ClothError> {
-    skin_of_asset(mesh)?.ok_or(ClothError::SkinJoints {
+    skin_of_asset(mesh)?.ok_or(ClothError::Skin(SkinError::MissingJoints {
         needed: 1,
         joints: 0,
-    })
+    }))
 }
 
 /// The assets, if the app has any.
@@ -63,8 +64,8 @@ impl Sources<'_, '_> {
     /// is the one that it was made from.
     ///
     /// # Errors
-    /// [`ClothError::MeshLoading`] while it is being loaded, [`MeshNotLoaded`](ClothError::MeshNotLoaded) if nothing
-    /// loads it, [`MeshFailed`](ClothError::MeshFailed).
+    /// [`MeshError::Loading`] while it is being loaded, [`NotLoaded`](MeshError::NotLoaded) if nothing
+    /// loads it, [`Failed`](MeshError::Failed).
     pub fn find(
         &self,
         entity: Entity,
@@ -80,7 +81,7 @@ impl Sources<'_, '_> {
             (Some(mesh), _) => Some(&mesh.0),
             (None, drawn) => drawn.and_then(ClothMesh::source),
         };
-        let handle = handle.ok_or(ClothError::MeshNotLoaded)?;
+        let handle = handle.ok_or(MeshError::NotLoaded)?;
         self.loaded(handle.id(), known).map(Some)
     }
 
@@ -109,11 +110,13 @@ impl Sources<'_, '_> {
             .as_ref()
             .and_then(|server| server.get_load_state(id))
         {
-            Some(LoadState::Failed(error)) => Err(ClothError::MeshFailed {
+            Some(LoadState::Failed(error)) => Err(ClothError::Mesh(MeshError::Failed {
                 reason: error.to_string(),
-            }),
-            Some(LoadState::Loading) => Err(ClothError::MeshLoading),
-            Some(LoadState::NotLoaded | LoadState::Loaded) | None => Err(ClothError::MeshNotLoaded),
+            })),
+            Some(LoadState::Loading) => Err(MeshError::Loading.into()),
+            Some(LoadState::NotLoaded | LoadState::Loaded) | None => {
+                Err(MeshError::NotLoaded.into())
+            }
         }
     }
 
@@ -121,22 +124,23 @@ impl Sources<'_, '_> {
     ///
     /// # Errors
     /// The error of the mesh.
-    pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, ClothError> {
+    pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, MeshError> {
         let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
-        TriangleMesh::of_asset(mesh.ok_or(ClothError::MeshNotLoaded)?)
+        TriangleMesh::of_asset(mesh.ok_or(MeshError::NotLoaded)?)
     }
 
     /// The skinning by joints of a surface that was made from that mesh.
     ///
     /// # Errors
-    /// The error of the mesh; [`ClothError::SkinJoints`] if it names no joints.
+    /// The error of the mesh; [`SkinError::MissingJoints`] if it names no joints.
     pub fn skinning(&self, source: Source, surface: &Surface) -> Result<Skinning, ClothError> {
         let mesh = self
             .meshes
             .as_ref()
             .and_then(|meshes| meshes.get(source.mesh));
-        let skin = skin_of(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
-        Skinning::new(surface, &self.triangles(source.mesh)?.positions, &skin)
+        let skin = skin_of(mesh.ok_or(MeshError::NotLoaded)?)?;
+        let mesh = self.triangles(source.mesh)?;
+        Ok(Skinning::new(surface, &mesh.positions, &skin)?)
     }
 
     /// The triangles of a skinned mesh, bound to its joints.
@@ -148,7 +152,7 @@ impl Sources<'_, '_> {
             .meshes
             .as_ref()
             .and_then(|meshes| meshes.get(source.mesh));
-        let skin = skin_of(mesh.ok_or(ClothError::MeshNotLoaded)?)?;
+        let skin = skin_of(mesh.ok_or(MeshError::NotLoaded)?)?;
         let mesh = self.triangles(source.mesh)?;
         SkinnedTriangles::new(&mesh.positions, &mesh.triangles, &skin)
     }
@@ -157,7 +161,7 @@ impl Sources<'_, '_> {
     ///
     /// # Errors
     /// The error of the mesh.
-    pub fn mesh(&self, recipe: &Recipe) -> Result<TriangleMesh, ClothError> {
+    pub fn mesh(&self, recipe: &Recipe) -> Result<TriangleMesh, MeshError> {
         let of = |source: Source| self.triangles(source.mesh);
         recipe
             .source

@@ -16,7 +16,7 @@ use bevy::{
 
 use super::{asset::Sources, joints::Skins};
 use crate::{
-    cloth::ClothError,
+    cloth::{ClothError, MeshError},
     contact::{ClothCollider, MeshCollider, SkinnedTriangles},
     plugin::{frame::Places, state::Source},
 };
@@ -77,7 +77,7 @@ impl ColliderMeshes<'_, '_> {
             return Ok(None);
         };
         let Ok(mesh) = self.meshes.get(entity) else {
-            return Err(ClothError::MeshNotLoaded);
+            return Err(MeshError::NotLoaded.into());
         };
         self.sources.loaded(mesh.0.id(), known).map(Some)
     }

@@ -12,7 +12,10 @@ use bevy::{
     transform::components::GlobalTransform,
 };
 
-use crate::{cloth::ClothError, plugin::authoring::ClothSkeleton};
+use crate::{
+    cloth::{ClothError, MeshError, SkinError},
+    plugin::authoring::ClothSkeleton,
+};
 
 /// The skins of all entities.
 #[derive(SystemParam)]
@@ -39,8 +42,8 @@ impl Skins<'_, '_> {
     /// knows it, times its inverse bind pose. Empty for an entity that is not skinned.
     ///
     /// # Errors
-    /// [`ClothError::Joint`] for a joint without a transform, [`ClothError::MeshLoading`] while the bind poses are
-    /// being loaded, [`ClothError::SkinJoints`] if there are none, or fewer than joints.
+    /// [`SkinError::Joint`] for a joint without a transform, [`MeshError::Loading`] while the bind poses are
+    /// being loaded, [`SkinError::MissingJoints`] if there are none, or fewer than joints.
     pub fn read(
         &self,
         entity: Entity,
@@ -56,23 +59,23 @@ impl Skins<'_, '_> {
             let server = self.server.as_ref();
             let state = server.and_then(|server| server.get_load_state(bound));
             return Err(match state {
-                Some(LoadState::Loading) => ClothError::MeshLoading,
-                _ => ClothError::SkinJoints {
+                Some(LoadState::Loading) => ClothError::Mesh(MeshError::Loading),
+                _ => ClothError::Skin(SkinError::MissingJoints {
                     needed: joints.len(),
                     joints: 0,
-                },
+                }),
             });
         };
         if joints.is_empty() || inverse.len() < joints.len() {
-            return Err(ClothError::SkinJoints {
+            return Err(ClothError::Skin(SkinError::MissingJoints {
                 needed: joints.len(),
                 joints: inverse.len(),
-            });
+            }));
         }
         for (joint, (&entity, inverse)) in joints.iter().zip(inverse.iter()).enumerate() {
             let matrix = place(entity).map(|place| place.affine() * Affine3A::from_mat4(*inverse));
             let matrix = matrix.filter(Affine3A::is_finite);
-            matrices.push(matrix.ok_or(ClothError::Joint { joint, entity })?);
+            matrices.push(matrix.ok_or(SkinError::Joint { joint, entity })?);
         }
         Ok(())
     }

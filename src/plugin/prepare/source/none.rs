@@ -9,7 +9,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{Cloth, ClothError, Skinning, Surface, TriangleMesh},
+    cloth::{Cloth, ClothError, MeshError, Skinning, Surface, TriangleMesh},
     contact::{ClothCollider, SkinnedTriangles},
     plugin::{
         frame::Places,
@@ -40,7 +40,7 @@ impl Sources<'_, '_> {
     }
 
     /// No recipe has any.
-    pub fn mesh(&self, _: &Recipe) -> Result<TriangleMesh, ClothError> {
+    pub fn mesh(&self, _: &Recipe) -> Result<TriangleMesh, MeshError> {
         Ok(TriangleMesh::default())
     }
 }
