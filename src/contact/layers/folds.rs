@@ -56,7 +56,7 @@ impl Window {
         let thickness = cloth.settings.thickness;
         let (mut is_folded, mut slack) = (true, f32::INFINITY);
         if let Some(flattened) = cloth.sheet.windows().flattened(window) {
-            let closest = flattened.closest();
+            let closest = flattened.closest;
             let least = LEAST * thickness.min((closest - thickness).max(OF_REST * closest));
             slack = flattened.slack(flattened.unfolded(places, scratch), thickness, OF_REST);
             // Also for NaN.

@@ -37,6 +37,7 @@ mod circumstances;
 mod compare;
 mod contacts;
 mod flattened;
+mod flattening;
 mod folds;
 mod inside;
 mod intersections;

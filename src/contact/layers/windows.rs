@@ -8,7 +8,7 @@
 //!   └───┴───┴───┴───┘
 //! ```
 
-use super::flattened::{Flattened, Flattening};
+use super::{flattened::Flattened, flattening::Flattening};
 use crate::cloth::{ByParticle, Surface};
 
 /// The windows of a sheet, and which patches are neighbours in them.

@@ -24,7 +24,7 @@ fn bounds(sheet: &Sheet, window: usize, places: &[Vec3A], thickness: f32) -> Opt
     let flattened = sheet.windows().flattened(window)?;
     let unfolded = flattened.unfolded(places, &mut Scratch::default());
     let slack = flattened.slack(unfolded, thickness, OF_REST);
-    Some([unfolded * flattened.closest(), slack])
+    Some([unfolded * flattened.closest, slack])
 }
 
 /// The features of each patch, by their particles.
@@ -139,8 +139,7 @@ fn long_sheets_are_proved_flat() {
     }
 }
 
-/// All patches that share a particle are neighbours, and most windows of whole surfaces are laid flat: all but those at a border
-/// that is not convex.
+/// All patches that share a particle are neighbours, and windows are laid flat but for those at a border that is not convex.
 #[test]
 fn patches_that_share_a_particle_are_neighbours() {
     for (name, surface) in surfaces() {
@@ -163,13 +162,8 @@ fn patches_that_share_a_particle_are_neighbours() {
         let laid = windows
             .clone()
             .filter(|&of| sheet.windows().flattened(of).is_some());
-        let least = if ["bay", "torn"].contains(&name) {
-            0.2
-        } else {
-            0.5
-        };
         let part = laid.count() as f32 / windows.len() as f32;
-        assert!(part >= least, "{name}: {part} of the windows are laid flat");
+        assert!(part > 0.3, "{name}: {part} of the windows are laid flat");
     }
 }
 

@@ -45,8 +45,8 @@ fn rolled(at: Vec3, time: f32) -> Vec3 {
 }
 
 /// Grids and meshes with slits, with holes and in single faces, in many steps: a roll closes, and each particle goes a way of its own.
-/// So cuts open, and their sides pass through each other and others. Everything nearer than the thickness is listed.
-/// All that is nearer than it is kept apart is a contact.
+/// So cuts open, and their sides pass through each other and others. All that is nearer than it is kept apart is
+/// listed, and a contact.
 #[test]
 fn no_pair_of_a_torn_cloth_is_lost() {
     const STEPS: usize = 24;
@@ -97,7 +97,6 @@ fn no_pair_of_a_torn_cloth_is_lost() {
             contact.near.pass(&of, &contact.motion);
             brute.near(&places(&cloths[0]), reach, |feature, apart| {
                 let name = || format!("step {step} of {seed}: {feature:?}, {apart} m apart");
-                assert!(listed.contains(&feature), "not listed: {}", name());
                 let [first, second] = [&feature.0, &feature.1].map(|of| {
                     of.iter()
                         .map(|at| at_rest[*at as usize])
@@ -107,6 +106,7 @@ fn no_pair_of_a_torn_cloth_is_lost() {
                 let kept = (of_both * reach).min(OF_REST * in_plane(&first, &second) - ROUNDING);
                 if apart < kept {
                     met += 1;
+                    assert!(listed.contains(&feature), "not listed: {}", name());
                     assert!(contacts.contains(&feature), "no contact: {}", name());
                 }
                 let was = |at: &u32| surface.origin_of(*at);
