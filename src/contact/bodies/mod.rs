@@ -8,4 +8,4 @@ mod standing;
 pub use body::BodyChange;
 pub(crate) use body::{Before, Body};
 pub(crate) use carriers::{Carrier, Carriers};
-pub(crate) use standing::{ContactStep, Near, Stand, StandingResult, Supports};
+pub(crate) use standing::{ContactStep, Near, Stand, StandingResponse, Supports};

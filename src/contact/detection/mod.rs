@@ -16,7 +16,7 @@ use std::sync::Arc;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
-    bodies::{Before, Body, BodyChange, Carriers, Supports},
+    bodies::{Before, Body, BodyChange, Carriers, StandingResponse, Supports},
     candidates::{
         Candidates, ContactPoint, ContactSettings, NarrowPhase, PushedParticles, SavedCandidates,
         TestedFaces, Touch,
@@ -281,9 +281,9 @@ impl Detection {
     ) -> bool {
         let has_carried = self.detach_load(particles, substep);
         self.follow_rolling(particles, substep.end());
-        let has_stood = self.stand(particles, settings, substep, Body::stand);
+        let has_stood = self.stand(particles, settings, substep, StandingResponse::KeepOff);
         let is_pushed = self.push_out(particles, settings, substep, others);
-        self.stand(particles, settings, substep, Body::apply_friction);
+        self.stand(particles, settings, substep, StandingResponse::Rub);
         if let Some(coming) = substep.next()
             && !self.bodies.is_empty()
         {

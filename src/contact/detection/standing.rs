@@ -4,21 +4,12 @@ use super::{Detection, send_on};
 use crate::{
     cloth::{ClothParticles, MapInline},
     contact::{
-        bodies::{Body, ContactStep, Near, Stand, StandingResult, Supports},
+        bodies::{ContactStep, Near, Stand, StandingResponse, Supports},
         candidates::{Candidates, ContactSettings, Touch},
-        colliders::{MovingCollider, moving_of},
+        colliders::moving_of,
     },
     solver::SubStep,
 };
-
-/// The response of a body that stands: [`Body::stand`] or [`Body::apply_friction`].
-pub(super) type Act = fn(
-    &mut Body,
-    &mut Supports,
-    &mut ClothParticles,
-    &mut MovingCollider,
-    &ContactStep,
-) -> Option<StandingResult>;
 
 impl Detection {
     /// Finds where bodies stand at a fraction of the tick.
@@ -58,13 +49,13 @@ impl Detection {
         }
     }
 
-    /// Has each body that stands `act` on what it stands on and on the cloth between. Returns whether anything moved.
+    /// The response of each body that stands, of what it stands on, and of the cloth between. Returns whether anything moved.
     pub(super) fn stand(
         &mut self,
         particles: &mut ClothParticles,
         settings: &ContactSettings,
         substep: SubStep,
-        act: Act,
+        response: StandingResponse,
     ) -> bool {
         if self.supports.stands.is_empty() {
             return false;
@@ -80,7 +71,8 @@ impl Detection {
                 grips: &self.candidates.grips,
                 substep,
             };
-            let Some(stood) = act(body, &mut self.supports, particles, &mut moving, &step) else {
+            let supports = &mut self.supports;
+            let Some(stood) = body.stand(supports, particles, &mut moving, &step, response) else {
                 continue;
             };
             has_stood = true;

@@ -28,6 +28,15 @@ pub(crate) struct ContactStep<'a> {
     pub substep: SubStep,
 }
 
+/// One of the two responses of a body that stands, in a sub-step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum StandingResponse {
+    /// The body is kept off what it stands on.
+    KeepOff,
+    /// Friction acts on the body, and on the cloth between it and what it stands on, after all else has pushed these.
+    Rub,
+}
+
 /// The result of a sub-step of a body that stands.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StandingResult {
@@ -226,60 +235,18 @@ impl Supports {
 }
 
 impl Body {
-    /// Keeps the body off what it stands on. `None` if it stands on nothing.
+    /// The response of the body at the points where it stands as the sub-step ends. `None` if it stands on nothing.
     pub fn stand(
         &mut self,
         supports: &mut Supports,
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
         step: &ContactStep,
+        response: StandingResponse,
     ) -> Option<StandingResult> {
-        supports.begin_substep(self.id);
-        self.respond(
-            supports,
-            particles,
-            moving,
-            step,
-            |supports, _, (mass, _)| (push_all(&mut supports.points, mass), 0.0),
-        )
-    }
-
-    /// Lets friction act on the body, and on the cloth between it and what it stands on, after all else has pushed these.
-    /// `None` if it stands on nothing.
-    pub fn apply_friction(
-        &mut self,
-        supports: &mut Supports,
-        particles: &mut ClothParticles,
-        moving: &mut MovingCollider,
-        step: &ContactStep,
-    ) -> Option<StandingResult> {
-        self.respond(
-            supports,
-            particles,
-            moving,
-            step,
-            |supports, particles, (mass, motion)| {
-                let pushed = supports.slow(particles, motion, step);
-                let body = rub_all(&mut supports.points, mass);
-                ([body, Motion::default()], pushed)
-            },
-        )
-    }
-
-    /// Finds the points where the body stands as the sub-step ends, and moves it as `solve` says: by a motion, and by another one
-    /// of its place alone. `solve` also returns the largest displacement of a particle (m).
-    fn respond(
-        &mut self,
-        supports: &mut Supports,
-        particles: &mut ClothParticles,
-        moving: &mut MovingCollider,
-        step: &ContactStep,
-        solve: impl FnOnce(
-            &mut Supports,
-            &mut ClothParticles,
-            (&BodyMass, &ColliderSubstep),
-        ) -> ([Motion; 2], f32),
-    ) -> Option<StandingResult> {
+        if response == StandingResponse::KeepOff {
+            supports.begin_substep(self.id);
+        }
         let (pose, centre) = self.centre(moving, step.substep.end());
         let mass = *self.mass();
         let motion = moving.in_substep(step.substep);
@@ -287,13 +254,21 @@ impl Body {
         if supports.points.is_empty() {
             return None;
         }
-        let ([body, released], pushed) = solve(supports, particles, (&mass, &motion));
+        // The motion of the body, one of its place alone, and the largest displacement of a particle (m).
+        let ([body, released], pushed) = match response {
+            StandingResponse::KeepOff => (push_all(&mut supports.points, &mass), 0.0),
+            StandingResponse::Rub => {
+                let pushed = supports.slow(particles, &motion, step);
+                let body = rub_all(&mut supports.points, &mass);
+                ([body, Motion::default()], pushed)
+            }
+        };
         if !(body.is_finite() && released.is_finite()) {
             return None;
         }
         let given = supports.end([centre, Vec3::from(pose.translation).as_dvec3()]);
-        let place = [body.go + released.go, body.turn + released.turn];
-        let changes = [place[0], place[1], body.go, body.turn];
+        let [go, turn] = [body.go + released.go, body.turn + released.turn];
+        let changes = [go, turn, body.go, body.turn];
         let before = self.change();
         let gone = self.send_on(moving, step.substep, particles.substep(), changes);
         self.add_held(before);
