@@ -5,14 +5,14 @@ use std::ops::Range;
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{
-    cover::{Cover, Near, ground_below, onto},
+    cover::{Cover, Near},
     point::StandingPoint,
 };
 use crate::{
     cloth::{ClothParticles, LANES, MapInline, Slot},
     contact::{
         candidates::ContactBlock,
-        colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider, moving_of},
+        colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider, Nearest, moving_of},
         friction::Impulse,
     },
 };
@@ -133,10 +133,13 @@ impl Supports {
         let first = [self.all.len(), self.between.len()];
         let middle = self.manifold.middle();
         let points = &self.manifold.points;
-        let place = |point: &ManifoldPoint| Place::of(point, [moving, below], passed);
+        let place = |point: &ManifoldPoint| Place::of(point, [moving, below], poses, passed);
         let cover = |point: &ManifoldPoint| {
             let mut inwards = INWARDS.iter().map(|&part| point.lerp(&middle, part));
-            inwards.find_map(|point| place(&point).cover(near))
+            inwards.find_map(|point| {
+                let place = place(&point);
+                near.cover([place.below, place.above], place.normal)
+            })
         };
         let mut cloth = [None; MOST_POINTS];
         for (to, point) in cloth.iter_mut().zip(points) {
@@ -268,24 +271,29 @@ struct Place {
 }
 
 impl Place {
-    fn of(point: &ManifoldPoint, [moving, ground]: [&MovingCollider; 2], passed: f32) -> Self {
-        let [body_pose, ground_pose] =
-            [moving, ground].map_inline(|collider| collider.pose_at(passed));
-        let above = onto(moving, body_pose * point.on_second, passed);
-        let rough = [
-            ground_pose * point.on_first,
-            ground_pose.rotation * point.normal,
-        ];
-        let [below, normal] = ground_below(above, rough, ground, passed);
+    /// The manifold is right to a tenth of a millimetre only, and what stands would rock. So these are the points of the
+    /// surfaces nearest to it. `poses` are those of the body and of the ground.
+    fn of(
+        point: &ManifoldPoint,
+        [body, ground]: [&MovingCollider; 2],
+        poses: [Isometry3d; 2],
+        passed: f32,
+    ) -> Self {
+        let on_body = poses[0] * point.on_second;
+        let nearest = body.nearest(passed, on_body);
+        let above = on_body - nearest.normal * nearest.distance;
+        let Nearest { distance, normal } = ground.nearest(passed, above);
+        let rough = poses[1].rotation * point.normal;
+        // Inside of the ground, another side may be nearer.
+        let [below, normal] = match distance < 0.0 && normal.dot(rough) < 0.99 {
+            true => [poses[1] * point.on_first, rough],
+            false => [above - normal * distance, normal],
+        };
         Self {
             above,
             below,
             normal,
         }
-    }
-
-    fn cover(&self, near: &Near) -> Option<Cover> {
-        near.cover([self.below, self.above], self.normal)
     }
 
     /// The support there, by a piece of cloth. `poses` are those of the body and of the ground.
