@@ -83,7 +83,7 @@ impl BodyChange {
 pub(crate) struct Body {
     /// Index of the caller's collider.
     pub id: usize,
-    mass: BodyMass,
+    pub(super) mass: BodyMass,
     /// Its motion without any contact.
     start: MovingCollider,
     /// Its motion when candidates were last searched for.
@@ -156,10 +156,6 @@ impl Body {
             held: BodyChange::default(),
             carriers,
         })
-    }
-
-    pub(super) fn mass(&self) -> &BodyMass {
-        &self.mass
     }
 
     /// The change of its motion so far in the tick.

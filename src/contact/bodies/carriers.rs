@@ -182,18 +182,13 @@ impl Carriers {
         let from = particles.loads_mut().len();
         // Not so if one is NaN.
         if pressed > 0.0 && most > 0.0 {
-            for &Carrier {
-                slot,
-                normal,
-                pressed,
-                ..
-            } in &self.all
-            {
+            for carrier in &self.all {
+                let slot = carrier.slot;
                 let block = &particles.blocks()[slot.block];
-                let part = (part * pressed).min(MAX_LOAD);
+                let part = (part * carrier.pressed).min(MAX_LOAD);
                 let mass = part / block.inverse_mass(slot.lane);
                 let surface = surface(block.position(slot.lane));
-                let load = Load::new(slot, mass, normal, surface);
+                let load = Load::new(slot, mass, carrier.normal, surface);
                 particles.loads_mut().push(load);
             }
         }

@@ -248,7 +248,7 @@ impl Body {
             supports.begin_substep(self.id);
         }
         let (pose, centre) = self.centre(moving, step.substep.end());
-        let mass = *self.mass();
+        let mass = self.mass;
         let motion = moving.in_substep(step.substep);
         supports.begin(self.id, &motion, (&mass, centre, particles), step);
         if supports.points.is_empty() {

@@ -194,10 +194,15 @@ impl Supports {
         moving.turn.length() * (passed - self.searched_at) > ROLLS
     }
 
+    /// The stands on what holds a body in this tick.
+    fn holding(&self, body: usize) -> impl Iterator<Item = &Stand> {
+        let stands = self.stands.iter();
+        stands.filter(move |stand| stand.body == body && stand.holds)
+    }
+
     /// Whether something holds a body in this tick.
     pub fn is_held(&self, body: usize) -> bool {
-        let mut own = self.stands.iter().filter(|stand| stand.body == body);
-        own.any(|stand| stand.holds)
+        self.holding(body).next().is_some()
     }
 
     /// The direction in which a body is held at a fraction of the tick, if it is. Colliders have their IDs.
@@ -207,16 +212,14 @@ impl Supports {
         colliders: &[(usize, MovingCollider)],
         passed: f32,
     ) -> Option<Vec3> {
-        let mut own = self.stands.iter();
-        let stand = own.find(|stand| stand.body == body && stand.holds)?;
+        let stand = self.holding(body).next()?;
         let ground = moving_of(colliders, stand.ground)?;
         Some(ground.pose_at(passed).rotation * self.all[stand.supports.start].normal)
     }
 
     /// Whether a collider holds a body in this tick.
     pub fn is_held_by(&self, body: usize, ground: usize) -> bool {
-        let mut own = self.stands.iter().filter(|stand| stand.body == body);
-        own.any(|stand| stand.ground == ground && stand.holds)
+        self.holding(body).any(|stand| stand.ground == ground)
     }
 
     /// Pins cloth that lies flat on what holds a body while the body pushes other cloth, until [`show`](Self::show). The
