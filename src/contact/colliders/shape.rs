@@ -160,7 +160,7 @@ impl ColliderShape {
     pub(crate) fn edge(&self, index: u32) -> Option<SharpEdge> {
         match self {
             Self::Cuboid { half_size } => Some(boxes::edge(*half_size, index)),
-            Self::Geometry(geometry) => Some(geometry.edge(index)),
+            Self::Geometry(geometry) => Some(*geometry.edges().get(index)),
             _ => None,
         }
     }
@@ -179,7 +179,7 @@ impl ColliderShape {
                     visit(index, &boxes::edge(*half_size, index));
                 }
             }
-            Self::Geometry(geometry) => geometry.edges_near(within, smooth, visit),
+            Self::Geometry(geometry) => geometry.edges().near(within, smooth, visit),
             _ => {}
         }
     }
@@ -189,7 +189,7 @@ impl ColliderShape {
     pub(crate) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
         match self {
             Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
-            Self::Geometry(geometry) => geometry.edge_distance(point, within, smooth),
+            Self::Geometry(geometry) => geometry.edges().distance(point, within, smooth),
             _ => f32::INFINITY,
         }
     }

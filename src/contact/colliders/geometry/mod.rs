@@ -97,7 +97,7 @@ impl ColliderGeometry {
     pub(crate) fn parts(&self) -> Parts {
         Parts {
             solids: self.0.solids.clone(),
-            edges: self.0.edges.as_slice().to_vec(),
+            edges: self.0.edges.all.clone(),
         }
     }
 
@@ -143,25 +143,9 @@ impl ColliderGeometry {
         each.fold(f32::INFINITY, f32::min)
     }
 
-    /// One of its edges.
+    /// Its edges.
     #[inline]
-    pub(crate) fn edge(&self, index: u32) -> SharpEdge {
-        *self.0.edges.get(index)
-    }
-
-    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order; none of a surface with
-    /// a radius of at least `smooth` (m).
-    pub(crate) fn edges_near(
-        &self,
-        within: [Vec3; 2],
-        smooth: f32,
-        visit: impl FnMut(u32, &SharpEdge),
-    ) {
-        self.0.edges.near(within, smooth, visit);
-    }
-
-    /// Distance of the nearest edge (m); infinite if none is within the given distance.
-    pub(crate) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
-        self.0.edges.distance(point, within, smooth)
+    pub(super) fn edges(&self) -> &SharpEdges {
+        &self.0.edges
     }
 }
