@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{Isometry3d, Vec3},
+    math::{Isometry3d, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::Transform,
 };
@@ -224,18 +224,18 @@ impl ClothCollider {
                 half_height,
             } => {
                 let (radius, half_height) = sizes.round(radius, half_height, &CYLINDER)?;
-                let mut parts = Parts::default();
-                parts.add_cylinder(half_height, radius)?;
-                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+                let cylinder = SharedShape::cylinder(half_height, radius);
+                ColliderGeometry::of_parry(Pose::IDENTITY, &cylinder).map(ColliderShape::Geometry)
             }
             Self::Cone {
                 radius,
                 half_height,
             } => {
                 let (radius, half_height) = sizes.round(radius, half_height, &CONE)?;
-                let mut parts = Parts::default();
-                parts.add_cone(half_height, radius, scale.y > 0.0)?;
-                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+                let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
+                let pose = if scale.y > 0.0 { Pose::IDENTITY } else { over };
+                let cone = SharedShape::cone(half_height, radius);
+                ColliderGeometry::of_parry(pose, &cone).map(ColliderShape::Geometry)
             }
             Self::Ball { radius } => {
                 let largest = sizes.0.max_element();

@@ -164,18 +164,16 @@ impl MeshEdges {
         let is_tip = tips(vertices.len(), triangles, normal);
         let sharp = self.edges().filter_map(|sides| {
             let ends = sides[0].vertices.map(|vertex| vertices[vertex as usize]);
-            let edge = |outward, part| {
-                Some(SharpEdge {
-                    ends,
-                    outward,
-                    radius: 0.0,
-                    round: 0.0,
-                    part,
-                })
+            let edge = |outward, part| SharpEdge {
+                ends,
+                outward,
+                radius: 0.0,
+                round: 0.0,
+                part,
             };
             let [a, b] = sides else {
                 // A border, or an edge where several sheets meet.
-                return edge(Vec3::ZERO, 1.0);
+                return Some(edge(Vec3::ZERO, 1.0));
             };
             let mut normals = [normal(a.face), normal(b.face)];
             if a.is_forward == b.is_forward {
@@ -187,7 +185,7 @@ impl MeshEdges {
                 return None;
             }
             if !has_inside {
-                return edge(Vec3::ZERO, 1.0);
+                return Some(edge(Vec3::ZERO, 1.0));
             }
             // At a convex edge, the other face lies behind this one.
             let beyond = corners(b.face).map(|corner| normals[0].dot(corner - ends[0]));
@@ -199,11 +197,7 @@ impl MeshEdges {
                 true => 1.0,
                 false => (sine / SHARP_ENOUGH).clamp(LEAST_PART, 1.0),
             };
-            if sticks_out {
-                edge(outward, part)
-            } else {
-                None
-            }
+            sticks_out.then(|| edge(outward, part))
         });
         sharp.collect()
     }
@@ -213,9 +207,9 @@ impl MeshEdges {
 fn tips(vertices: usize, triangles: &[[u32; 3]], normal: impl Fn(u32) -> Vec3) -> Vec<bool> {
     let mut means = vec![Vec3::ZERO; vertices];
     for (face, corners) in (0..).zip(triangles) {
-        corners
-            .iter()
-            .for_each(|&corner| means[corner as usize] += normal(face));
+        for &corner in corners {
+            means[corner as usize] += normal(face);
+        }
     }
     let mut is_tip = vec![false; vertices];
     for (face, corners) in (0..).zip(triangles) {

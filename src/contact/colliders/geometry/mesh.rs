@@ -9,6 +9,9 @@ use super::{
 };
 use crate::cloth::{ClothError, FARTHEST};
 
+/// Positions of vertices (m), and those of each triangle.
+pub(crate) type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
+
 /// A mesh, its inside, and its sharp edges.
 pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
 
@@ -68,8 +71,7 @@ pub(in crate::contact::colliders) fn check_triangles(
 /// # Errors
 /// For a vertex that is not finite or missing, and if no triangle has an area.
 pub(crate) fn build(
-    mut vertices: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+    (mut vertices, triangles): Triangles,
     ground: bool,
 ) -> Result<Built, ClothError> {
     let count = triangles.len();

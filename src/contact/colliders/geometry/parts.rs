@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::math::{Quat, Vec3};
+use bevy::math::Vec3;
 use parry3d::{
     math::Pose,
     shape::{SharedShape, TriMesh, Triangle, TypedShape},
@@ -10,7 +10,7 @@ use parry3d::{
 
 use super::{
     edges::SharpEdge,
-    mesh,
+    mesh::{self, Triangles},
     solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
 };
 use crate::cloth::ClothError;
@@ -26,8 +26,6 @@ pub(crate) struct Parts {
     pub(super) edges: Vec<SharpEdge>,
 }
 
-type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
-
 impl Parts {
     /// Adds triangles as a mesh, or as ground with everything below.
     ///
@@ -36,10 +34,10 @@ impl Parts {
     pub fn add_mesh(
         &mut self,
         pose: Pose,
-        (vertices, triangles): Triangles,
+        triangles: Triangles,
         is_ground: bool,
     ) -> Result<(), ClothError> {
-        let (mesh, sides, edges) = mesh::build(vertices, triangles, is_ground)?;
+        let (mesh, sides, edges) = mesh::build(triangles, is_ground)?;
         self.add_built(pose, mesh.into(), sides);
         self.add_edges(pose, &edges, 0.0);
         Ok(())
@@ -66,7 +64,7 @@ impl Parts {
     /// [`ClothError::FlatHull`] if it has no volume.
     fn add_hull(&mut self, pose: Pose, triangles: Triangles) -> Result<(), ClothError> {
         let points = triangles.0.len();
-        let (mesh, sides, edges) = mesh::build(triangles.0, triangles.1, false)?;
+        let (mesh, sides, edges) = mesh::build(triangles, false)?;
         let size = mesh.local_aabb().extents().as_dvec3().max_element();
         if sides != MeshSides::Closed
             || mesh::volume(mesh.vertices(), mesh.indices()) <= 1.0e-9 * size.powi(3)
@@ -112,7 +110,7 @@ impl Parts {
         triangles: Triangles,
         radius: f32,
     ) -> Result<(), ClothError> {
-        let (_, _, edges) = build(triangles)?;
+        let (.., edges) = mesh::build(triangles, false)?;
         self.add_convex(pose, shape);
         self.add_edges(pose, &edges, radius);
         Ok(())
@@ -137,23 +135,6 @@ impl Parts {
             radius: edge.radius + radius,
             ..*edge
         }));
-    }
-
-    /// Adds a cylinder along the y axis.
-    pub fn add_cylinder(&mut self, half_height: f32, radius: f32) -> Result<(), ClothError> {
-        self.add(Pose::IDENTITY, &SharedShape::cylinder(half_height, radius))
-    }
-
-    /// Adds a cone along the y axis with its tip up or down.
-    pub fn add_cone(
-        &mut self,
-        half_height: f32,
-        radius: f32,
-        is_upright: bool,
-    ) -> Result<(), ClothError> {
-        let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
-        let pose = if is_upright { Pose::IDENTITY } else { over };
-        self.add(pose, &SharedShape::cone(half_height, radius))
     }
 
     /// Adds other parts with a pose.
@@ -210,7 +191,7 @@ impl Parts {
             TypedShape::ConvexPolyhedron(hull) => self.add_hull(pose, hull.to_trimesh())?,
             TypedShape::Cuboid(cuboid) => self.add_round(pose, shape, cuboid.to_trimesh(), 0.0)?,
             TypedShape::Cylinder(cylinder) => {
-                let (_, _, mut edges) = build(cylinder.to_trimesh(SIDES))?;
+                let (.., mut edges) = mesh::build(cylinder.to_trimesh(SIDES), false)?;
                 for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
                     (edge.round, edge.part) = (cylinder.radius, 1.0);
                 }
@@ -218,7 +199,7 @@ impl Parts {
                 self.add_edges(pose, &edges, 0.0);
             }
             TypedShape::Cone(cone) => {
-                let (_, _, edges) = build(cone.to_trimesh(SIDES))?;
+                let (.., edges) = mesh::build(cone.to_trimesh(SIDES), false)?;
                 self.add_convex(pose, shape);
                 self.add_edges(pose, &in_pieces(&edges, cone.radius), 0.0);
             }
@@ -251,12 +232,6 @@ impl Parts {
         }
         Ok(())
     }
-}
-
-fn build(
-    (vertices, triangles): Triangles,
-) -> Result<(TriMesh, MeshSides, Vec<SharpEdge>), ClothError> {
-    mesh::build(vertices, triangles, false)
 }
 
 /// Whether an edge runs along the side of a cylinder or cone, and not around it.
