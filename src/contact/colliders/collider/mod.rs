@@ -11,7 +11,7 @@ use parry3d::{math::Pose, shape::SharedShape};
 use super::{
     geometry::{ColliderGeometry, Parts},
     shape::ColliderShape,
-    source::{SharedCollider, check_scale},
+    source::{SharedCollider, Source, check_scale},
 };
 use crate::cloth::{ClothError, FARTHEST};
 
@@ -158,7 +158,7 @@ impl ClothCollider {
 
     /// The convex hull of points (m), which must not all lie in one plane.
     pub fn convex_hull(points: impl Into<Vec<Vec3>>) -> Self {
-        Self::Shared(SharedCollider::hull(points.into()))
+        Self::Shared(SharedCollider::new(Source::Hull(points.into())))
     }
 
     /// Triangles between vertices (m). A closed mesh, with two triangles at each edge, is solid, whatever its winding
@@ -167,14 +167,19 @@ impl ClothCollider {
     ///
     /// Built once and shared by all clones.
     pub fn trimesh(vertices: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
-        Self::Shared(SharedCollider::triangles(vertices.into(), triangles.into()))
+        let source = Source::Triangles(vertices.into(), triangles.into());
+        Self::Shared(SharedCollider::new(source))
     }
 
     /// A height field around the entity's origin. `heights` are row by row: rows lie along z, with `columns` heights
     /// along x. `size` (m) is its extent along x and z, and in y the scale of the heights. Everything below it is
     /// inside.
     pub fn heightfield(heights: impl Into<Vec<f32>>, columns: usize, size: Vec3) -> Self {
-        Self::Shared(SharedCollider::height_field(heights.into(), columns, size))
+        Self::Shared(SharedCollider::new(Source::HeightField {
+            heights: heights.into(),
+            columns,
+            size,
+        }))
     }
 
     /// Several shapes as one, each with a pose in the entity's frame (m). Planes and meshes from an asset cannot be
@@ -195,7 +200,7 @@ impl ClothCollider {
 
     /// A shape of parry, the geometry library of rapier. It ignores the transform's scale.
     pub fn parry(shape: SharedShape) -> Self {
-        Self::Shared(SharedCollider::parry(shape))
+        Self::Shared(SharedCollider::new(Source::Parry(shape)))
     }
 
     /// Pose of the shape's frame in the entity's frame: the identity, except for shapes from parry.
