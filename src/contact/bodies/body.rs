@@ -6,7 +6,7 @@ use super::carriers::Carriers;
 use crate::{
     cloth::{Block, ClothParticles, LANES, MapInline},
     contact::{
-        colliders::{BodyMass, ColliderSubstep, MovingCollider},
+        colliders::{BodyMass, ColliderSubstep, MovingCollider, swing},
         friction::Impulse,
     },
     solver::SubStep,
@@ -190,12 +190,8 @@ impl Body {
         let deviation = |part: f32| {
             let (expected, is) = (self.searched.pose_at(part), moving.pose_at(part));
             let turned = is.rotation.angle_between(expected.rotation);
-            let swing = if turned > 0.0 {
-                turned * moving.shape.core_extent()
-            } else {
-                0.0
-            };
-            Vec3::from(is.translation).distance(expected.translation.into()) + swing
+            let gone = Vec3::from(is.translation).distance(expected.translation.into());
+            gone + swing(turned, moving.shape.core_extent())
         };
         deviation(passed).max(deviation(1.0))
     }

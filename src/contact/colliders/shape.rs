@@ -120,9 +120,7 @@ impl ColliderShape {
         match *self {
             Self::Ball { .. } => 0.0,
             Self::Capsule { half_length, .. } => half_length,
-            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) | Self::Deforming(_) => {
-                self.extent()
-            }
+            _ => self.extent(),
         }
     }
 
