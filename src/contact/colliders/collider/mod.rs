@@ -219,7 +219,7 @@ impl ClothCollider {
     /// length may be zero. [`ClothError::MeshNotLoaded`] for a mesh, because only the plugin can access the assets.
     /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
-        let sizes = Scale(scale.abs());
+        let sizes = scale.abs();
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
             Self::Compound(ref parts) => compound(parts, scale),
@@ -228,7 +228,7 @@ impl ClothCollider {
                 radius,
                 half_height,
             } => {
-                let (radius, half_height) = sizes.round(radius, half_height, &CYLINDER)?;
+                let (radius, half_height) = round(radius, half_height, sizes, &CYLINDER)?;
                 let cylinder = SharedShape::cylinder(half_height, radius);
                 ColliderGeometry::of_parry(Pose::IDENTITY, &cylinder).map(ColliderShape::Geometry)
             }
@@ -236,16 +236,15 @@ impl ClothCollider {
                 radius,
                 half_height,
             } => {
-                let (radius, half_height) = sizes.round(radius, half_height, &CONE)?;
+                let (radius, half_height) = round(radius, half_height, sizes, &CONE)?;
                 let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
                 let pose = if scale.y > 0.0 { Pose::IDENTITY } else { over };
                 let cone = SharedShape::cone(half_height, radius);
                 ColliderGeometry::of_parry(pose, &cone).map(ColliderShape::Geometry)
             }
             Self::Ball { radius } => {
-                let largest = sizes.0.max_element();
                 let names = ["the ball's radius (m)", "the ball's scaled radius (m)"];
-                let radius = length(radius, largest, names)?;
+                let radius = length(radius, sizes.max_element(), names)?;
                 Ok(ColliderShape::Ball { radius })
             }
             Self::Capsule {
@@ -256,9 +255,9 @@ impl ClothCollider {
                     "the capsule's radius (m)",
                     "the capsule's scaled radius (m)",
                 ];
-                let radius = sizes.across(radius, names)?;
+                let radius = length(radius, across(sizes), names)?;
                 let half_length = ClothError::check(
-                    half_length * sizes.0.y,
+                    half_length * sizes.y,
                     |v| v >= 0.0 && v.is_finite(),
                     "half of the capsule's scaled length (m)",
                     "zero or more",
@@ -274,10 +273,10 @@ impl ClothCollider {
                     "half of the box's scaled length (m)",
                 ];
                 for axis in 0..3 {
-                    length(half_size[axis], sizes.0[axis], names)?;
+                    length(half_size[axis], sizes[axis], names)?;
                 }
                 Ok(ColliderShape::Cuboid {
-                    half_size: half_size * sizes.0,
+                    half_size: half_size * sizes,
                 })
             }
             Self::Plane => Ok(ColliderShape::HalfSpace),
@@ -314,25 +313,20 @@ fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, Cloth
     ClothError::check(value * scale, positive, names[1], "positive")
 }
 
-/// The scale of a shape along each axis, mirrored or not.
-struct Scale(Vec3);
+/// The scale of a radius about the y axis: the larger of x and z.
+fn across(scale: Vec3) -> f32 {
+    scale.x.max(scale.z)
+}
 
-impl Scale {
-    /// A radius about the y axis, scaled by the larger of x and z.
-    fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, ClothError> {
-        length(radius, self.0.x.max(self.0.z), names)
-    }
-
-    /// The radius and half of the height of a shape that is round about the y axis.
-    fn round(
-        &self,
-        radius: f32,
-        half_height: f32,
-        names: &RoundNames,
-    ) -> Result<(f32, f32), ClothError> {
-        let radius = self.across(radius, names[0])?;
-        Ok((radius, length(half_height, self.0.y, names[1])?))
-    }
+/// The radius and half of the height of a shape that is round about the y axis.
+fn round(
+    radius: f32,
+    half_height: f32,
+    scale: Vec3,
+    names: &RoundNames,
+) -> Result<(f32, f32), ClothError> {
+    let radius = length(radius, across(scale), names[0])?;
+    Ok((radius, length(half_height, scale.y, names[1])?))
 }
 
 /// Several shapes as one.
