@@ -42,8 +42,6 @@ pub(crate) struct EdgeClearance {
     deepest: f32,
     /// Upper limit of the result (m).
     slack: f32,
-    /// The smallest clearance of all edges so far (m).
-    left: f32,
     rounding: f32,
 }
 
@@ -68,19 +66,8 @@ impl EdgeClearance {
             reach,
             deepest: DEEPEST * longest,
             slack,
-            left: slack,
             rounding: 1.0e-6 * (middle.length() + longest),
         }
-    }
-
-    /// Displacement of the corners before any edge can touch (m).
-    pub fn left(&self) -> f32 {
-        self.left
-    }
-
-    /// Takes an edge into account.
-    pub fn see(&mut self, edge: &SharpEdge) {
-        self.left = self.left.min(self.of(edge));
     }
 
     /// Displacement of the corners before an edge can touch (m), up to the slack.
