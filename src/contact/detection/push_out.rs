@@ -8,7 +8,6 @@ use crate::{
     contact::{
         candidates::{Candidates, ContactSettings, NarrowPhase},
         colliders::{MovingCollider, moving_of},
-        edges::push_shape,
         friction::{Impulse, PushOut},
         particles::{ContactResult, ParticlesNearEdges, lane_motion, push_particles},
         triangles::{CoreMotion, ResumePoint, TrianglePush},
@@ -112,7 +111,6 @@ impl Detection {
         substep: SubStep,
     ) -> (ContactResult, Option<ResumePoint>) {
         let (touch, margin) = (&self.touches[at], &self.margin);
-        let count = self.candidates.all.len();
         let Candidates {
             all,
             blocks,
@@ -144,14 +142,10 @@ impl Detection {
         let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
             _ if is_guarded => {
-                self.shapes.reserve(count);
-                let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
-                let of = (touch.id, &collider.shape, self.surface.len());
-                let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
+                self.shapes.reserve(all.len());
                 let limit = collider.max_surface_travel(f32::INFINITY) + margin.size();
                 let travelled = [touch.travelled, limit];
                 (self.shapes.guard).measure(particles, margin.origin(), contacts, travelled);
-                let known = self.shapes.of(touch.of.candidates.clone(), of);
                 let mut pushing = ParticlesNearEdges {
                     candidates: &all[touch.of.candidates.clone()],
                     contacts,
@@ -161,8 +155,11 @@ impl Detection {
                     lanes: &lanes,
                     has_hidden,
                 };
-                let edges = by_triangles.then_some(&*self.surface);
-                (push_shape(particles, &mut pushing, known, edges), None)
+                let of = (touch.id, touch.of.candidates.clone());
+                let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
+                let cloth = (&mut *particles, &*self.surface);
+                let found = self.shapes.push(cloth, &mut pushing, of, by_triangles);
+                (found, None)
             }
             NarrowPhase::Triangles => {
                 let mut pushed = TrianglePush::new(
