@@ -30,8 +30,6 @@ const SKIN: f32 = 0.02;
 const SLACK: f32 = 0.25;
 /// Largest side of a triangle, in spacings: a diagonal of a grid, stretched by 6 %.
 const SIDE: f32 = 1.5;
-/// Largest push of a corner, relative to that of a triangle's point.
-const MAX_SHARE: f32 = 2.0;
 
 /// No candidate.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -271,15 +269,10 @@ fn push_point(
         ..
     } = *contact;
     let normal = motion.of.pose.rotation * normal;
-    let parts = [0, 1, 2].map_inline(|corner| weights[corner] * corners.inverse_masses[corner]);
-    let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-    // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
-    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
-    if mobility == 0.0 {
+    let Some(shares) = corners.shares(weights) else {
         return (0.0, depth);
-    }
+    };
     let point = at(corners.positions, weights) + normal * (depth - motion.reach);
-    let origin = motion.of.origin;
     let surface = motion.of.surface_motion(point);
     let push = Contact {
         normal,
@@ -288,13 +281,11 @@ fn push_point(
     }
     .push(friction, &motion.push_out);
     let mut farthest = 0.0_f32;
-    for (corner, part) in parts.into_iter().enumerate() {
-        let share = part / mobility;
+    for (corner, share) in shares.into_iter().enumerate() {
         if share > 0.0 {
             let push = [push.position * share, push.displacement * share];
-            farthest = farthest.max(push[0].length());
-            let pushed = corners.push(corner, particles, push);
-            given.add(pushed - origin, push[1], corners.inverse_masses[corner]);
+            let by = (&mut *given, motion.of.origin);
+            farthest = farthest.max(corners.push(corner, particles, push, by));
         }
     }
     (farthest, depth)
@@ -309,7 +300,6 @@ fn push_in_front(
     (motion, friction): (&EdgeMotion, f32),
     given: &mut Impulse,
 ) -> (f32, f32) {
-    let origin = motion.of.origin;
     let (mut farthest, mut deepest) = (0.0_f32, 0.0_f32);
     for corner in 0..3 {
         let position = corners.positions[corner];
@@ -326,13 +316,9 @@ fn push_in_front(
         }
         .push(friction, &motion.push_out);
         deepest = deepest.max(depth);
-        farthest = farthest.max(push.position.length());
-        let pushed = corners.push(corner, particles, [push.position, push.displacement]);
-        given.add(
-            pushed - origin,
-            push.displacement,
-            corners.inverse_masses[corner],
-        );
+        let push = [push.position, push.displacement];
+        let by = (&mut *given, motion.of.origin);
+        farthest = farthest.max(corners.push(corner, particles, push, by));
     }
     (farthest, deepest)
 }

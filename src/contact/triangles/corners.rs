@@ -2,12 +2,13 @@
 
 use bevy::math::{Isometry3d, Vec3};
 
+use super::lanes::MAX_SHARE;
 use crate::{
     cloth::{Block, ClothParticles, MapInline, Slot, Surface},
     contact::{
         candidates::ContactSettings,
         colliders::{ColliderSubstep, MovingCollider, NearestPoints, at, nearest},
-        friction::first_touch,
+        friction::{Impulse, first_touch},
     },
     hierarchy::{Core, Probe},
 };
@@ -32,20 +33,34 @@ impl Corners {
         }
     }
 
-    /// Moves a corner, and adds a displacement to its motion (m). Returns its new position.
+    /// Moves a corner, and adds a displacement to its motion (m). Adds the impulse on the collider, which has its origin
+    /// there (m). Returns the distance.
     #[inline]
     pub fn push(
         &self,
         corner: usize,
         particles: &mut ClothParticles,
         [push, displacement]: [Vec3; 2],
-    ) -> Vec3 {
+        (given, origin): (&mut Impulse, Vec3),
+    ) -> f32 {
         let Slot { block, lane } = self.slots[corner];
         let block = &mut particles.blocks_mut()[block];
         let pushed = self.positions[corner] + push;
         block.set_position(lane, pushed);
         block.set_displacement(lane, self.displacements[corner] + displacement);
-        pushed
+        given.add(pushed - origin, displacement, self.inverse_masses[corner]);
+        push.length()
+    }
+
+    /// The push of each corner relative to that of the point with these weights: by its weight and its inverse mass.
+    /// `None` if none can move.
+    #[inline]
+    pub fn shares(&self, weights: [f32; 3]) -> Option<[f32; 3]> {
+        let parts = [0, 1, 2].map_inline(|corner| weights[corner] * self.inverse_masses[corner]);
+        let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
+        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
+        let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
+        (mobility != 0.0).then(|| parts.map_inline(|part| part / mobility))
     }
 
     /// Positions at a fraction of the sub-step.

@@ -4,14 +4,11 @@ use bevy::math::Vec3;
 
 use super::{ResumePoint, TrianglePush};
 use crate::{
-    cloth::{ClothParticles, MapInline, Slot},
+    cloth::{ClothParticles, Slot},
     contact::{
         colliders::{at, cap},
         friction::{Contact, PushOut},
-        triangles::{
-            corners::{CoreMotion, Corners, Touching},
-            lanes::MAX_SHARE,
-        },
+        triangles::corners::{CoreMotion, Corners, Touching},
     },
 };
 
@@ -65,13 +62,9 @@ impl TrianglePush<'_> {
         push_out: &PushOut,
     ) -> f32 {
         let (weights, normal) = (touch.weights, touch.normal);
-        let parts = [0, 1, 2].map_inline(|corner| weights[corner] * corners.inverse_masses[corner]);
-        let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
-        let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
-        if mobility == 0.0 {
+        let Some(shares) = corners.shares(weights) else {
             return 0.0;
-        }
+        };
         let point =
             at(corners.positions, weights) + normal * (depth - motion.settings.particle_radius);
         let surface = motion.of.surface_motion(point);
@@ -82,8 +75,7 @@ impl TrianglePush<'_> {
         }
         .stopped_and_out(push_out);
         let mut farthest = 0.0_f32;
-        for (corner, part) in parts.into_iter().enumerate() {
-            let share = part / mobility;
+        for (corner, share) in shares.into_iter().enumerate() {
             if share > 0.0 {
                 let push = [normal * (far * share), normal * (momentum * share)];
                 farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
@@ -136,11 +128,8 @@ impl TrianglePush<'_> {
         motion: &CoreMotion,
     ) -> f32 {
         let slot = corners.slots[corner];
-        let pushed = corners.push(corner, particles, [displacement, momentum]);
-        let weight = corners.inverse_masses[corner];
-        self.found
-            .given
-            .add(pushed - motion.of.origin, momentum, weight);
+        let by = (&mut self.found.given, motion.of.origin);
+        let distance = corners.push(corner, particles, [displacement, momentum], by);
         let block = slot.block as u32;
         if let Ok(at) = self
             .contacts
@@ -148,6 +137,6 @@ impl TrianglePush<'_> {
         {
             self.budgets[at].add_one(slot.lane, momentum.to_array());
         }
-        displacement.length()
+        distance
     }
 }
