@@ -77,6 +77,8 @@ pub(crate) struct Touching {
     pub normal: Vec3,
     /// The core's point (m).
     pub centre: Vec3,
+    /// Penetration along the normal (m), negative outside.
+    pub depth: f32,
     /// Whether the sweep found it, on a path longer than half of the reach.
     pub is_swept: bool,
 }
@@ -133,9 +135,8 @@ impl<'a> CoreMotion<'a> {
         point.distance(nearest) - near - rounding
     }
 
-    /// The contact of a triangle at the end of the sub-step or at its first hit, and its penetration along the normal
-    /// (m), negative outside.
-    pub fn touch(&self, corners: &Corners) -> Option<(Touching, f32)> {
+    /// The contact of a triangle at the end of the sub-step or at its first hit.
+    pub fn touch(&self, corners: &Corners) -> Option<Touching> {
         let reach = self.reach;
         let segment = |part: f32| segment(self.of.collider, self.of.pose_at(part));
         let touching = |nearest: NearestPoints, [start, end]: [Vec3; 2], triangle: [Vec3; 3]| {
@@ -143,16 +144,13 @@ impl<'a> CoreMotion<'a> {
                 0.0 => (face_normal(triangle, start.midpoint(end)), 0.0),
                 distance => (nearest.offset / distance, distance),
             };
-            let centre = start.lerp(end, nearest.along);
-            (
-                Touching {
-                    weights: nearest.weights,
-                    normal,
-                    centre,
-                    is_swept: false,
-                },
-                distance,
-            )
+            Touching {
+                weights: nearest.weights,
+                normal,
+                centre: start.lerp(end, nearest.along),
+                depth: reach - distance,
+                is_swept: false,
+            }
         };
         let speed = self.of.speed(corners.displacements);
         let [a, b, c] = corners.positions;
@@ -177,19 +175,18 @@ impl<'a> CoreMotion<'a> {
             });
             if let Some(part) = hit {
                 let (triangle, core) = (corners.when(part), segment(part));
-                let (mut touch, _) = touching(nearest(triangle, core), core, triangle);
+                let mut touch = touching(nearest(triangle, core), core, triangle);
                 touch.is_swept = speed > reach / 2.0;
                 // The position that it would have, had it moved on with the surface.
                 (touch.centre, touch.normal) = self.of.carry(part, touch.centre, touch.normal);
                 let offset = at(corners.positions, touch.weights) - touch.centre;
-                let depth = reach - touch.normal.dot(offset);
-                if depth > 0.0 {
-                    return Some((touch, depth));
+                touch.depth = reach - touch.normal.dot(offset);
+                if touch.depth > 0.0 {
+                    return Some(touch);
                 }
             }
         }
-        let (touch, distance) = touching(nearest_at_end, self.at_end, corners.positions);
-        Some((touch, reach - distance))
+        Some(touching(nearest_at_end, self.at_end, corners.positions))
     }
 }
 
@@ -227,15 +224,11 @@ pub fn meets_triangles(
         Core::Cuboid { .. } | Core::HalfSpace { .. } => return !found.is_empty(),
     };
     let reach = probe.reach() as f32;
-    let layout = particles.layout();
     let mut faces = found
         .iter()
         .flat_map(|&particle| surface.faces().of(particle));
     faces.any(|face| {
-        let corners = Corners::of(
-            particles,
-            face.map_inline(|corner| layout.slot_of(corner as usize)),
-        );
-        nearest(corners.positions, segment).offset.length_squared() < reach * reach
+        let corners = face.map_inline(|corner| particles.position_at(corner as usize));
+        nearest(corners, segment).offset.length_squared() < reach * reach
     })
 }

@@ -25,25 +25,26 @@ impl TrianglePush<'_> {
     ) {
         let reach = motion.reach;
         let corners = Corners::of(particles, slots);
-        let Some((touch, depth)) = motion.touch(&corners) else {
+        let Some(touch) = motion.touch(&corners) else {
             return;
         };
+        let depth = touch.depth.min(reach);
         let own = &mut self.contacts[contact].depth[lane];
-        *own = own.max(depth.min(reach));
-        if depth <= 0.0 {
+        *own = own.max(depth);
+        if touch.depth <= 0.0 {
             return;
         }
         let pushed = if touch.is_swept {
             self.push_corners(particles, &corners, &touch, motion, push_out)
         } else {
-            self.push_point(particles, &corners, (&touch, depth), motion, push_out)
+            self.push_point(particles, &corners, &touch, motion, push_out)
         };
         if pushed == 0.0 {
             return;
         }
         resume.is_swept |= touch.is_swept;
         self.passed = self.passed.max(pushed);
-        self.found.deepest = self.found.deepest.max(depth.min(reach));
+        self.found.deepest = self.found.deepest.max(depth);
         if self.is_measured && resume.pass == 0 {
             let (area, volume) = cap(corners.positions, touch.centre, reach);
             self.found.area += area;
@@ -57,11 +58,11 @@ impl TrianglePush<'_> {
         &mut self,
         particles: &mut ClothParticles,
         corners: &Corners,
-        (touch, depth): (&Touching, f32),
+        touch: &Touching,
         motion: &CoreMotion,
         push_out: &PushOut,
     ) -> f32 {
-        let (weights, normal) = (touch.weights, touch.normal);
+        let (weights, normal, depth) = (touch.weights, touch.normal, touch.depth);
         let Some(shares) = corners.shares(weights) else {
             return 0.0;
         };
