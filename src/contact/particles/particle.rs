@@ -1,6 +1,6 @@
 //! The narrow phase by particles: each is a ball with its own radius.
 
-use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
+use bevy::math::{DVec3, Mat3, Vec3};
 
 use super::{
     lanes::{LaneMotion, Sums, push_cuboid, push_half_space, push_round},
@@ -71,7 +71,6 @@ pub(crate) fn push_particles(
 ) -> ContactResult {
     let mut found = ContactResult::default();
     let mut sums = Sums::default();
-    let pose = of.pose;
     let blocks = particles.blocks_mut();
     let shape = &of.collider.shape;
     if shape.is_geometry() {
@@ -79,7 +78,7 @@ pub(crate) fn push_particles(
         find_planes(blocks, contacts, planes, (shape, &frame, motion));
         push_planes(blocks, contacts, planes, (&frame, motion), &mut sums);
     } else {
-        push_lanes(blocks, contacts, (shape, pose), motion, &mut sums);
+        push_lanes(blocks, contacts, of, motion, &mut sums);
     }
     found.add(&sums);
     if sums.left > 0 {
@@ -123,38 +122,34 @@ pub(crate) fn lane_motion(
 fn push_lanes(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
-    (shape, pose): (&ColliderShape, Isometry3d),
+    of: &ColliderSubstep,
     motion: &LaneMotion,
     sums: &mut Sums,
 ) {
     let centre = motion.origin;
-    let up = pose.rotation * Vec3::Y;
-    match *shape {
+    let up = of.pose.rotation * Vec3::Y;
+    let round = |axis, half_length, radius| Round {
+        centre,
+        axis,
+        half_length,
+        reach: radius + motion.particle_radius,
+    };
+    match of.collider.shape {
         ColliderShape::Ball { radius } => {
-            let ball = Round {
-                centre,
-                axis: [0.0; 3],
-                half_length: 0.0,
-                reach: radius + motion.particle_radius,
-            };
+            let ball = round([0.0; 3], 0.0, radius);
             push_round(blocks, contacts, &ball, motion, sums);
         }
         ColliderShape::Capsule {
             radius,
             half_length,
         } => {
-            let capsule = Round {
-                centre,
-                axis: up.to_array(),
-                half_length,
-                reach: radius + motion.particle_radius,
-            };
+            let capsule = round(up.to_array(), half_length, radius);
             push_round(blocks, contacts, &capsule, motion, sums);
         }
         ColliderShape::Cuboid { half_size } => {
             let cuboid = Cuboid {
                 centre,
-                axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
+                axes: Mat3::from_quat(of.pose.rotation).to_cols_array_2d(),
                 half_size: half_size.to_array(),
                 reach: motion.particle_radius,
             };
@@ -199,15 +194,10 @@ fn push_left(
                 continue;
             }
             let (position, displacement) = (block.position(lane), block.displacement(lane));
-            let Nearest {
-                distance,
-                mut normal,
-            } = of.nearest(position);
-            let mut depth = particle_radius - distance;
+            let nearest = of.nearest(position);
             let hit = hit(of, settings, [position, displacement]);
-            if let Some((hit_normal, hit_depth)) = hit {
-                (normal, depth) = (hit_normal, hit_depth);
-            }
+            let (normal, depth) =
+                hit.unwrap_or((nearest.normal, particle_radius - nearest.distance));
             // Which others of a complex shape are tested depends on what is remembered.
             if depth > 0.0 || !shape.is_geometry() {
                 contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));

@@ -92,9 +92,7 @@ impl Planes {
             self.surface[axis][lane] = surface[axis];
         }
     }
-}
 
-impl Planes {
     /// Clears the positions of those that are not reused.
     #[cfg(test)]
     pub fn forget(&mut self) {
