@@ -109,13 +109,8 @@ impl Pieces {
             self.all[inside.piece as usize].is_torn |= is_blocked;
         }
         for piece in 0..self.all.len() {
-            let Piece {
-                count,
-                is_torn,
-                is_pinned,
-                ..
-            } = self.all[piece];
-            if count > 0 && is_torn && !is_pinned {
+            let own = self.all[piece];
+            if own.count > 0 && own.is_torn && !own.is_pinned {
                 self.all[piece].direction =
                     self.choose(piece, collider, particle_radius, others.clone());
             }
@@ -203,10 +198,7 @@ impl Pieces {
         let normal = normal.normalize_or_zero();
         let directions = [normal, -normal, out.normalize_or_zero()];
         let mut best = (f32::INFINITY, None);
-        for direction in directions
-            .into_iter()
-            .filter(|direction| *direction != Vec3::ZERO)
-        {
+        for direction in directions.into_iter().filter(|way| *way != Vec3::ZERO) {
             let (mut longest, mut sampled, mut blocked) = (0.0_f32, 0, 0);
             for member in members() {
                 sampled += 1;

@@ -19,7 +19,7 @@ impl Detection {
             let Some(touch) = self.touches.iter().find(|touch| touch.id == body.id) else {
                 continue;
             };
-            if self.embedding.blocks(body.id).len() > 0 {
+            if self.is_embedded(body.id) {
                 continue;
             }
             let near = Near {
@@ -105,10 +105,8 @@ impl Detection {
 /// A body touches the particles that it presses, however little.
 fn note_pressed(touch: &Touch, candidates: &mut Candidates, supports: &Supports) {
     let near = &candidates.all[touch.of.candidates.clone()];
-    let own = supports
-        .stands
-        .iter()
-        .filter(|stand| stand.body == touch.id);
+    let stands = supports.stands.iter();
+    let own = stands.filter(|stand| stand.body == touch.id);
     for particle in own.flat_map(|stand| &supports.between[stand.between.clone()]) {
         let known = near.binary_search_by_key(particle, |candidate| candidate.particle);
         if let Ok(at) = known {
