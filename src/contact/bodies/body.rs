@@ -88,9 +88,10 @@ pub(crate) struct Body {
     start: MovingCollider,
     /// Its motion when candidates were last searched for.
     searched: MovingCollider,
-    change: BodyChange,
+    /// The change of its motion so far in the tick.
+    pub change: BodyChange,
     /// The part of that by what it stands on.
-    held: BodyChange,
+    pub held: BodyChange,
     /// The particles that carry it while springs are solved.
     pub carriers: Carriers,
 }
@@ -156,16 +157,6 @@ impl Body {
             held: BodyChange::default(),
             carriers,
         })
-    }
-
-    /// The change of its motion so far in the tick.
-    pub fn change(&self) -> BodyChange {
-        self.change
-    }
-
-    /// The part of that change by what it stands on.
-    pub fn held(&self) -> BodyChange {
-        self.held
     }
 
     /// Notes that what it stands on has changed its motion since.

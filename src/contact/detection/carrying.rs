@@ -21,7 +21,7 @@ impl Detection {
     /// that they hold. `fall` is the velocity that gravity adds in a tick (m/s). 0 if nothing is carried.
     pub(crate) fn load_ratio(&self, fall: f32) -> f32 {
         let ratio = |body: &Body| {
-            let held = body.change().velocity.length();
+            let held = body.change.velocity.length();
             body.carriers.load_ratio(held, fall)
         };
         self.bodies.iter().map(ratio).fold(0.0, f32::max)

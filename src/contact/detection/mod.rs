@@ -104,7 +104,7 @@ impl Detection {
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
-        let margin = self.margin.size();
+        let margin = self.margin.size;
         Self::probe_within(margin, collider, settings, surface, longest_edge, cloth)
     }
 
@@ -184,13 +184,13 @@ impl Detection {
     /// The change of a collider's motion by the cloth so far, if it is dynamic and was near.
     pub fn body_change(&self, id: usize) -> Option<BodyChange> {
         let body = self.bodies.iter().find(|body| body.id == id);
-        body.map(Body::change)
+        body.map(|body| body.change)
     }
 
     /// The part of that change by what the body stands on.
     pub(crate) fn body_held(&self, id: usize) -> BodyChange {
         let body = self.bodies.iter().find(|body| body.id == id);
-        body.map_or_else(BodyChange::default, Body::held)
+        body.map_or_else(BodyChange::default, |body| body.held)
     }
 
     /// Adds a collider after a number of sub-steps.
@@ -228,7 +228,7 @@ impl Detection {
         if self.bodies.iter().all(|body| body.id != id) {
             (self.bodies).extend(Body::of(id, collider, &mut self.spare));
         }
-        if !self.margin.has_origin() {
+        if !self.margin.has_origin {
             // Pushes that balance springs add up in a tick without a displacement, so it is measured from here.
             self.margin.remember(particles);
         }

@@ -123,7 +123,7 @@ impl Detection {
         let has_edges = collider.shape.has_edges();
         let is_guarded = has_edges || collider.shape.is_geometry();
         // The guard measures the cloth.
-        let odometer = if is_guarded { 0.0 } else { margin.odometer() } + touch.travelled;
+        let odometer = if is_guarded { 0.0 } else { margin.odometer } + touch.travelled;
         let motion = collider.in_substep(substep);
         let seconds = particles.substep();
         let lanes_of = |shares: f32| {
@@ -143,9 +143,9 @@ impl Detection {
         let (found, stopped) = match touch.narrow_phase {
             _ if is_guarded => {
                 self.shapes.reserve(all.len());
-                let limit = collider.max_surface_travel(f32::INFINITY) + margin.size();
+                let limit = collider.max_surface_travel(f32::INFINITY) + margin.size;
                 let travelled = [touch.travelled, limit];
-                (self.shapes.guard).measure(particles, margin.origin(), contacts, travelled);
+                (self.shapes.guard).measure(particles, &margin.origin, contacts, travelled);
                 let mut pushing = ParticlesNearEdges {
                     candidates: &all[touch.of.candidates.clone()],
                     contacts,
@@ -167,7 +167,7 @@ impl Detection {
                     (contacts, first),
                     &mut budgets[touch.of.budgets.clone()],
                     (self.surface.fans(), self.surface.max_faces() as f32),
-                    [margin.left() - points.farthest_push, margin.moved_now()],
+                    [margin.left() - points.farthest_push, margin.moved_now],
                     touch.is_measured_in(substep),
                 );
                 let core = CoreMotion::new(motion, settings);

@@ -269,7 +269,7 @@ impl Body {
         let given = supports.end([centre, Vec3::from(pose.translation).as_dvec3()]);
         let [go, turn] = [body.go + released.go, body.turn + released.turn];
         let changes = [go, turn, body.go, body.turn];
-        let before = self.change();
+        let before = self.change;
         let gone = self.send_on(moving, step.substep, particles.substep(), changes);
         self.add_held(before);
         Some(StandingResult {
