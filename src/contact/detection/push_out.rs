@@ -6,7 +6,7 @@ use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{
-        candidates::{Candidates, ContactSettings, NarrowPhase},
+        candidates::{ContactSettings, NarrowPhase},
         colliders::{MovingCollider, moving_of},
         friction::{Impulse, PushOut},
         particles::{ContactResult, ParticlesNearEdges, lane_motion, push_particles},
@@ -111,17 +111,11 @@ impl Detection {
         substep: SubStep,
     ) -> (ContactResult, Option<ResumePoint>) {
         let (touch, margin) = (&self.touches[at], &self.margin);
-        let Candidates {
-            all,
-            blocks,
-            budgets,
-            ..
-        } = &mut self.candidates;
         let collider = &touch.collider;
+        let candidates = &self.candidates.all[touch.of.candidates.clone()];
+        let contacts = &mut self.candidates.blocks[touch.of.blocks.clone()];
         let first = touch.of.blocks.start;
-        let contacts = &mut blocks[touch.of.blocks.clone()];
-        let has_edges = collider.shape.has_edges();
-        let is_guarded = has_edges || collider.shape.is_geometry();
+        let is_guarded = collider.shape.has_edges() || collider.shape.is_geometry();
         // The guard measures the cloth.
         let odometer = if is_guarded { 0.0 } else { margin.odometer } + touch.travelled;
         let motion = collider.in_substep(substep);
@@ -139,21 +133,20 @@ impl Detection {
             true => push_particles(particles, contacts, (&mut [], 0), of, &lanes),
             false => ContactResult::default(),
         };
-        let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
             _ if is_guarded => {
-                self.shapes.reserve(all.len());
+                self.shapes.reserve(self.candidates.all.len());
                 let limit = collider.max_surface_travel(f32::INFINITY) + margin.size;
                 let travelled = [touch.travelled, limit];
                 (self.shapes.guard).measure(particles, &margin.origin, contacts, travelled);
                 let mut pushing = ParticlesNearEdges {
-                    candidates: &all[touch.of.candidates.clone()],
+                    candidates,
                     contacts,
                     first,
                     motion,
                     settings,
                     lanes: &lanes,
-                    has_hidden,
+                    has_hidden: self.supports.has_hidden(),
                 };
                 let of = (touch.id, touch.of.candidates.clone());
                 let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
@@ -162,14 +155,19 @@ impl Detection {
                 (found, None)
             }
             NarrowPhase::Triangles => {
-                let mut pushed = TrianglePush::new(
-                    &all[touch.of.candidates.clone()],
-                    (contacts, first),
-                    &mut budgets[touch.of.budgets.clone()],
-                    (self.surface.fans(), self.surface.max_faces() as f32),
-                    [margin.left() - points.farthest_push, margin.moved_now],
-                    touch.is_measured_in(substep),
-                );
+                let mut pushed = TrianglePush {
+                    candidates,
+                    contacts,
+                    first,
+                    budgets: &mut self.candidates.budgets[touch.of.budgets.clone()],
+                    fans: self.surface.fans(),
+                    max_faces: self.surface.max_faces() as f32,
+                    clearance: margin.left() - points.farthest_push,
+                    moved: margin.moved_now,
+                    is_measured: touch.is_measured_in(substep),
+                    found: ContactResult::default(),
+                    passed: 0.0,
+                };
                 let core = CoreMotion::new(motion, settings);
                 let stopped = pushed.push(particles, (&core, &lanes_of(TRIANGLES_A_PUSH)), from);
                 (pushed.found, stopped)
@@ -177,6 +175,7 @@ impl Detection {
             NarrowPhase::Auto | NarrowPhase::Particles => (ContactResult::default(), None),
         };
         let of = (touch.id, &motion);
+        let blocks = &mut self.candidates.blocks;
         let embedded = self.embedding.push(particles, blocks, of, settings);
         (found.and(&points).and(&embedded), stopped)
     }

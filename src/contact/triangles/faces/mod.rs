@@ -11,7 +11,7 @@ use super::{
     lanes::Cells,
 };
 use crate::{
-    cloth::{ClothParticles, Fans, Slot},
+    cloth::{ClothParticles, Fans, LANES, Slot},
     contact::{
         candidates::{Candidate, ContactBlock},
         colliders::ColliderShape,
@@ -45,43 +45,20 @@ pub(crate) struct TrianglePush<'a> {
     pub budgets: &'a mut [FrictionBudget],
     pub fans: &'a Fans,
     /// Number of triangles that may push each particle.
-    max_faces: f32,
+    pub max_faces: f32,
     /// Largest push before candidates may be missing (m).
     pub clearance: f32,
     /// Largest displacement in the sub-step (m).
     pub moved: f32,
     /// Whether areas are wanted.
     pub is_measured: bool,
-    /// Result of the sub-step.
+    /// Result of the sub-step so far.
     pub found: ContactResult,
-    /// Largest push by one triangle in this pass (m).
-    passed: f32,
+    /// Largest push by one triangle in this pass so far (m).
+    pub passed: f32,
 }
 
-impl<'a> TrianglePush<'a> {
-    pub fn new(
-        candidates: &'a [Candidate],
-        (contacts, first): (&'a mut [ContactBlock], usize),
-        budgets: &'a mut [FrictionBudget],
-        (fans, max_faces): (&'a Fans, f32),
-        [clearance, moved]: [f32; 2],
-        is_measured: bool,
-    ) -> Self {
-        Self {
-            candidates,
-            contacts,
-            first,
-            budgets,
-            fans,
-            max_faces,
-            clearance,
-            moved,
-            is_measured,
-            found: ContactResult::default(),
-            passed: 0.0,
-        }
-    }
-
+impl TrianglePush<'_> {
     /// Pushes triangles out of a collider that they touch or passed through in this sub-step. Each push moves the
     /// corners by their weights in the nearest point and their inverse masses. Friction then acts on their particles.
     ///
@@ -146,12 +123,12 @@ impl<'a> TrianglePush<'a> {
                 continue;
             }
             let now = lanes.odometer + self.pushed();
-            let of = &self.contacts[contact];
+            let of = &mut self.contacts[contact];
             if !of.are_faces_due && now < of.faces_clear_until {
                 continue;
             }
             let slot = Slot {
-                block: self.contacts[contact].block as usize,
+                block: of.block as usize,
                 lane,
             };
             let [clear, speed] = motion.clearance(particles.blocks(), slot, fan.corners);
@@ -160,8 +137,7 @@ impl<'a> TrianglePush<'a> {
             } else {
                 f32::NEG_INFINITY
             };
-            let contact_block = &mut self.contacts[contact];
-            contact_block.faces_clear_until = contact_block.faces_clear_until.min(until);
+            of.faces_clear_until = of.faces_clear_until.min(until);
             if clear > speed {
                 continue;
             }
@@ -219,16 +195,10 @@ impl<'a> TrianglePush<'a> {
                 max_faces: self.max_faces,
                 is_measured: self.is_measured && resume.pass == 0,
             };
-            let blocks = particles.blocks_mut();
-            let of = (lanes, &cells);
-            let (stop, next) = push_cells(
-                blocks,
-                self.contacts,
-                self.budgets,
-                of,
-                resume.place,
-                &mut sums,
-            );
+            let (blocks, from) = (particles.blocks_mut(), resume.place);
+            let (contacts, budgets) = (&mut *self.contacts, &mut *self.budgets);
+            let (stop, next) =
+                push_cells(blocks, contacts, budgets, (lanes, &cells), from, &mut sums);
             resume.place = next;
             self.passed = self.passed.max(sums.passed);
             match stop {
@@ -237,7 +207,7 @@ impl<'a> TrianglePush<'a> {
                     which,
                     lanes: left,
                 } => {
-                    for (lane, _) in left.iter().enumerate().filter(|(_, is_left)| **is_left) {
+                    for lane in (0..LANES).filter(|&lane| left[lane]) {
                         let slots = slots_of(layout, &self.contacts[contact], which, lane);
                         let at = (contact, lane);
                         self.push_one(particles, motion, at, slots, &lanes.push_out, resume);
@@ -271,15 +241,8 @@ impl<'a> TrianglePush<'a> {
         let seconds = particles.substep();
         let mut sums = Sums::default();
         let blocks = particles.blocks_mut();
-        hold_all(
-            blocks,
-            self.contacts,
-            self.budgets,
-            &core,
-            lanes,
-            seconds,
-            &mut sums,
-        );
+        let (contacts, budgets) = (&*self.contacts, &mut *self.budgets);
+        hold_all(blocks, contacts, budgets, &core, lanes, seconds, &mut sums);
         let farthest = self.found.farthest_push;
         self.found.add(&sums);
         // Friction comes after all pushes.
