@@ -83,24 +83,11 @@ impl PushOut {
     /// `apart` is the relative displacement along the normal (m).
     #[inline(always)]
     pub fn of_lane(&self, depth: f32, apart: f32) -> (f32, f32) {
-        let stopped = if depth < -apart { depth } else { -apart };
-        let stopped = if stopped > 0.0 { stopped } else { 0.0 };
+        let stopped = larger(smaller(depth, -apart), 0.0);
         let overlap = depth - stopped;
-        let released = overlap * self.rate;
-        let released = larger(released, self.slowest);
-        let released = if released < self.fastest {
-            released
-        } else {
-            self.fastest
-        };
-        (
-            stopped,
-            if released < overlap {
-                released
-            } else {
-                overlap
-            },
-        )
+        let released = larger(overlap * self.rate, self.slowest);
+        let released = smaller(released, self.fastest);
+        (stopped, smaller(released, overlap))
     }
 
     /// The released part of an overlap (m).
@@ -114,6 +101,12 @@ impl PushOut {
 #[inline(always)]
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, likewise.
+#[inline(always)]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// The impulse on a collider as mass × displacement (kg m): momentum times the sub-step.

@@ -15,7 +15,7 @@ use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
-        friction::{PushOut, larger},
+        friction::{PushOut, larger, smaller},
     },
 };
 
@@ -134,12 +134,7 @@ pub(crate) fn survey<const DEFORMS: bool>(
         leave_out(view, near, contact, motion, &is_unusual);
     }
     for (known, depth) in contact.depth.iter_mut().zip(near.depth) {
-        let depth = if depth < motion.thickness {
-            depth
-        } else {
-            motion.thickness
-        };
-        *known = if depth > *known { depth } else { *known };
+        *known = larger(smaller(depth, motion.thickness), *known);
     }
     // Smaller by rounding errors and by the tolerance of a touch.
     let moved = motion.odometer + contact.moved;

@@ -6,7 +6,7 @@ use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, MapInline, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
-        friction::{FrictionBudget, larger},
+        friction::{FrictionBudget, larger, smaller},
         particles::{LaneMotion, Sums},
     },
 };
@@ -50,16 +50,8 @@ fn hold(
         let budget = held.budget[l] * kept + motion.friction * grips[l] * pushed;
         let (x, y, z) = (view[X + l] - ox, view[Y + l] - oy, view[Z + l] - oz);
         let along = x * ux + y * uy + z * uz;
-        let along = if along < core.half_length {
-            along
-        } else {
-            core.half_length
-        };
-        let along = if along > -core.half_length {
-            along
-        } else {
-            -core.half_length
-        };
+        let along = smaller(along, core.half_length);
+        let along = larger(along, -core.half_length);
         // Displacement of the surface at the contact.
         let ax = ux * along + nx * core.radius;
         let ay = uy * along + ny * core.radius;

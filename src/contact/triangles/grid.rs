@@ -10,7 +10,7 @@ use crate::{
     cloth::{Block, LANES, Layout, MapInline, Slot, View},
     contact::{
         candidates::ContactBlock,
-        friction::FrictionBudget,
+        friction::{FrictionBudget, larger, smaller},
         particles::{LaneMotion, Sums},
     },
 };
@@ -113,17 +113,13 @@ fn push_eight(
         } else {
             f32::NEG_INFINITY
         };
-        contact.depth[l] = if depth > contact.depth[l] {
-            depth
-        } else {
-            contact.depth[l]
-        };
+        contact.depth[l] = larger(depth, contact.depth[l]);
         clear[l] = if is_left { f32::NEG_INFINITY } else { -depth };
     }
     let (mut any, mut least) = (false, f32::INFINITY);
     for l in 0..LANES {
         any |= is_pushed[l];
-        least = if clear[l] < least { clear[l] } else { least };
+        least = smaller(clear[l], least);
     }
     if any {
         let pushes = pushes([a, b, c], &near, &is_pushed, motion, cells, sums);
