@@ -126,11 +126,10 @@ impl Detection {
         };
         let lanes = lanes_of(1.0);
         self.embedding.hide(touch.id, particles);
-        let of = (&motion, settings);
         // Once, however often triangles are searched for again.
         let has_points = touch.of.has_points && from == ResumePoint::default();
         let points = match has_points && !is_guarded {
-            true => push_particles(particles, contacts, (&mut [], 0), of, &lanes),
+            true => push_particles(particles, contacts, (&mut [], 0), &motion, &lanes),
             false => ContactResult::default(),
         };
         let (found, stopped) = match touch.narrow_phase {
@@ -144,7 +143,6 @@ impl Detection {
                     contacts,
                     first,
                     motion,
-                    settings,
                     lanes: &lanes,
                     has_hidden: self.supports.has_hidden(),
                 };

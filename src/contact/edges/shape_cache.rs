@@ -79,12 +79,12 @@ impl ShapeCache {
             by_edges = push_off_edges(particles, pushing, surface, of, by, &motion);
         }
         self.guard.tell(pushing.contacts);
-        let at = (&pushing.motion, pushing.settings);
         let planes = match memory {
             Some(memory) => memory.planes(particles.layout().blocks()),
             None => (&mut [][..], 0),
         };
-        let found = push_particles(particles, pushing.contacts, planes, at, pushing.lanes);
+        let (of, lanes) = (&pushing.motion, pushing.lanes);
+        let found = push_particles(particles, pushing.contacts, planes, of, lanes);
         found.and(&by_edges)
     }
 }

@@ -13,10 +13,10 @@ use super::{
 use crate::{
     cloth::{ClothParticles, Fan, MapInline, Slot, Surface},
     contact::{
-        candidates::{Candidate, ContactSettings, Guard},
+        candidates::{Candidate, Guard},
         colliders::{ColliderSubstep, at},
-        friction::{Contact, Impulse, PushOut, first_touch},
-        particles::{ContactResult, ParticlesNearEdges},
+        friction::{Contact, Impulse, first_touch},
+        particles::{ContactResult, LaneMotion, ParticlesNearEdges},
         triangles::Corners,
     },
 };
@@ -37,44 +37,38 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// A shape's motion in a sub-step, for tests of triangles against its edges.
 pub(crate) struct EdgeMotion<'a> {
     of: ColliderSubstep<'a>,
-    settings: &'a ContactSettings,
-    /// Distance at which an edge touches (m).
-    reach: f32,
+    lanes: &'a LaneMotion,
     /// A triangle that moves farther in the sub-step may have passed an edge (m).
     fast: f32,
     near: Nearness,
     /// To its frame at the end.
     to_local: Affine3A,
-    push_out: PushOut,
 }
 
 impl<'a> EdgeMotion<'a> {
     /// On a cloth with a spacing (m), in a tick.
     pub fn new(pushing: &ParticlesNearEdges<'a>, spacing: f32, tick: u32) -> Self {
-        let settings = pushing.settings;
-        let skin = SKIN * spacing;
-        let reach = settings.particle_radius.max(skin);
+        let particle_radius = pushing.lanes.particle_radius;
+        let reach = particle_radius.max(SKIN * spacing);
         Self {
             of: pushing.motion,
-            settings,
-            reach,
+            lanes: pushing.lanes,
             fast: reach / 2.0,
             near: Nearness {
                 reach,
                 slack: reach.max(SLACK * spacing),
-                smooth: (SIDE * spacing).powi(2) / (6.0 * settings.particle_radius),
+                smooth: (SIDE * spacing).powi(2) / (6.0 * particle_radius),
                 tick,
                 substep: pushing.motion.substep.index,
             },
             to_local: pushing.motion.pose.inverse().into(),
-            push_out: pushing.lanes.push_out,
         }
     }
 
     /// Displacement relative to the shape for the swept test (m); 0 without one.
     #[inline]
     fn swept(&self, speed: f32) -> f32 {
-        if self.settings.is_swept && speed > self.fast && speed.is_finite() {
+        if self.lanes.is_swept && speed > self.fast && speed.is_finite() {
             speed
         } else {
             0.0
@@ -87,22 +81,22 @@ impl<'a> EdgeMotion<'a> {
         if speed == 0.0 {
             return None;
         }
-        let around = speed + self.reach;
+        let Nearness { reach, smooth, .. } = self.near;
+        let around = speed + reach;
         let closest = |part: f32| {
             let pose = self.of.pose_at(part);
             let triangle = [0, 1, 2].map_inline(|corner| {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
-            let limits = [self.reach, self.near.smooth];
-            NearEdge::of(&self.of.collider.shape, triangle, around, limits)
+            NearEdge::of(&self.of.collider.shape, triangle, around, [reach, smooth])
         };
         // For an edge that cut the triangle already, the original side is unknown.
         if closest(0.0).is_close {
             return None;
         }
-        let tolerance = 1.0e-2 * self.reach;
-        let part = first_touch(speed, self.reach, tolerance, |part| closest(part).distance)?;
+        let tolerance = 1.0e-2 * reach;
+        let part = first_touch(speed, reach, tolerance, |part| closest(part).distance)?;
         let (edge, pose) = (closest(part), self.of.pose_at(part));
         let normal = edge.offset.try_normalize()?;
         Some((self.of).carry(part, pose * edge.centre, pose.rotation * normal))
@@ -228,7 +222,7 @@ impl OffEdges<'_, '_> {
             let given = &mut self.found.given;
             let (index, slot) = self.pushing.place(&candidate);
             // That of the particle that owns the triangle.
-            let friction = motion.settings.friction * self.pushing.contacts[index].grip[slot.lane];
+            let friction = motion.lanes.friction * self.pushing.contacts[index].grip[slot.lane];
             let (pushed, depth) = if let Some(hit) = hit {
                 let corners = Corners::of(particles, slots);
                 push_in_front(particles, &corners, hit, (motion, friction), given)
@@ -272,14 +266,14 @@ fn push_point(
     let Some(shares) = corners.shares(weights) else {
         return (0.0, depth);
     };
-    let point = at(corners.positions, weights) + normal * (depth - motion.reach);
+    let point = at(corners.positions, weights) + normal * (depth - motion.near.reach);
     let surface = motion.of.surface_motion(point);
     let push = Contact {
         normal,
         depth,
         relative: at(corners.displacements, weights) - surface,
     }
-    .push(friction, &motion.push_out);
+    .push(friction, &motion.lanes.push_out);
     let mut farthest = 0.0_f32;
     for (corner, share) in shares.into_iter().enumerate() {
         if share > 0.0 {
@@ -303,18 +297,18 @@ fn push_in_front(
     let (mut farthest, mut deepest) = (0.0_f32, 0.0_f32);
     for corner in 0..3 {
         let position = corners.positions[corner];
-        let depth = motion.reach - normal.dot(position - centre);
+        let depth = motion.near.reach - normal.dot(position - centre);
         if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
             continue;
         }
-        let point = position + normal * (depth - motion.reach);
+        let point = position + normal * (depth - motion.near.reach);
         let surface = motion.of.surface_motion(point);
         let push = Contact {
             normal,
             depth,
             relative: corners.displacements[corner] - surface,
         }
-        .push(friction, &motion.push_out);
+        .push(friction, &motion.lanes.push_out);
         deepest = deepest.max(depth);
         let push = [push.position, push.displacement];
         let by = (&mut *given, motion.of.origin);

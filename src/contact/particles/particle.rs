@@ -66,7 +66,7 @@ pub(crate) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
     (planes, tick): (&mut [Planes], u32),
-    (of, settings): (&ColliderSubstep, &ContactSettings),
+    of: &ColliderSubstep,
     motion: &LaneMotion,
 ) -> ContactResult {
     let mut found = ContactResult::default();
@@ -82,7 +82,7 @@ pub(crate) fn push_particles(
     }
     found.add(&sums);
     if sums.left > 0 {
-        push_left(particles, contacts, (of, settings), motion, &mut found);
+        push_left(particles, contacts, of, motion, &mut found);
     }
     found
 }
@@ -109,7 +109,11 @@ pub(crate) fn lane_motion(
         particle_radius,
         most: thickness / 2.0,
         deepest,
-        tolerance: tolerance(thickness),
+        // A half-space is not thick.
+        tolerance: match thickness.is_finite() {
+            true => 1.0e-3 * thickness,
+            false => 0.0,
+        },
         is_swept: settings.is_swept,
         friction: settings.friction,
         push_out,
@@ -167,25 +171,16 @@ fn push_lanes(
     }
 }
 
-/// Distance that counts as a touch where something moves fast (m).
-fn tolerance(thickness: f32) -> f32 {
-    if thickness.is_finite() {
-        1.0e-3 * thickness
-    } else {
-        0.0
-    }
-}
-
 /// Pushes the particles of the remaining blocks one by one.
 fn push_left(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
-    (of, settings): (&ColliderSubstep, &ContactSettings),
+    of: &ColliderSubstep,
     motion: &LaneMotion,
     found: &mut ContactResult,
 ) {
-    let particle_radius = settings.particle_radius;
     let (shape, thickness) = (&of.collider.shape, motion.thickness);
+    let particle_radius = motion.particle_radius;
     for contact in contacts.iter_mut().filter(|contact| contact.left != 0) {
         for lane in (0..LANES).filter(|lane| contact.left & (1 << lane) != 0) {
             let block = &particles.blocks()[contact.block as usize];
@@ -195,7 +190,7 @@ fn push_left(
             }
             let (position, displacement) = (block.position(lane), block.displacement(lane));
             let nearest = of.nearest(position);
-            let hit = hit(of, settings, [position, displacement]);
+            let hit = hit(of, motion, [position, displacement]);
             let (normal, depth) =
                 hit.unwrap_or((nearest.normal, particle_radius - nearest.distance));
             // Which others of a complex shape are tested depends on what is remembered.
@@ -211,7 +206,7 @@ fn push_left(
                 depth,
                 relative: displacement - surface,
             }
-            .push(settings.friction * contact.grip[lane], &motion.push_out);
+            .push(motion.friction * contact.grip[lane], &motion.push_out);
             let mut pushed = position + push.position;
             if hit.is_some() && shape.is_geometry() {
                 // Another part of it may be in front of the one that was hit.
@@ -235,29 +230,28 @@ fn push_left(
 /// The normal where a particle from outside hit the collider, and its displacement along it to stay in front of the
 /// surface there (m): for motion so large that the test at the end of the sub-step may come too late.
 fn hit(
-    motion: &ColliderSubstep,
-    settings: &ContactSettings,
+    of: &ColliderSubstep,
+    motion: &LaneMotion,
     [position, displacement]: [Vec3; 2],
 ) -> Option<(Vec3, f32)> {
-    let radius = settings.particle_radius;
-    let thickness = motion.collider.shape.thickness() + radius;
-    let speed = motion.speed([displacement]);
+    let (radius, most) = (motion.particle_radius, motion.most);
+    let speed = of.speed([displacement]);
     // A particle that moved less than half of the thickness is still on its original side.
-    if !settings.is_swept || speed <= thickness / 2.0 || !speed.is_finite() {
+    if !motion.is_swept || speed <= most || !speed.is_finite() {
         return None;
     }
     let start = position - displacement;
     let place = |part: f32| start + displacement * part;
-    let nearest = |part: f32| motion.collider.nearest(motion.passed(part), place(part));
+    let nearest = |part: f32| of.collider.nearest(of.passed(part), place(part));
     // For a particle this deep already, the original side is unknown.
-    if nearest(0.0).distance < radius - thickness / 2.0 {
+    if nearest(0.0).distance < radius - most {
         return None;
     }
     let distance = |part| nearest(part).distance;
-    let part = first_touch(speed, radius, tolerance(thickness), distance)?;
+    let part = first_touch(speed, radius, motion.tolerance, distance)?;
     let Nearest { distance, normal } = nearest(part);
     // The position that it would have, had it moved on with the surface: in front of every convex shape.
-    let (carried, normal) = motion.carry(part, place(part), normal);
+    let (carried, normal) = of.carry(part, place(part), normal);
     let depth = normal.dot(carried - position) + (radius - distance);
     (depth > 0.0).then_some((normal, depth))
 }
