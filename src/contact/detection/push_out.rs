@@ -166,8 +166,8 @@ impl Detection {
                     found: ContactResult::default(),
                     passed: 0.0,
                 };
-                let core = CoreMotion::new(motion, settings);
-                let stopped = pushed.push(particles, (&core, &lanes_of(TRIANGLES_A_PUSH)), from);
+                let core = CoreMotion::new(motion, lanes_of(TRIANGLES_A_PUSH));
+                let stopped = pushed.push(particles, &core, from);
                 (pushed.found, stopped)
             }
             NarrowPhase::Auto | NarrowPhase::Particles => (ContactResult::default(), None),

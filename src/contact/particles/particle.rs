@@ -109,7 +109,7 @@ pub(crate) fn lane_motion(
         particle_radius,
         most: thickness / 2.0,
         deepest,
-        // A half-space is not thick.
+        // None for a half-space, which has no end.
         tolerance: match thickness.is_finite() {
             true => 1.0e-3 * thickness,
             false => 0.0,

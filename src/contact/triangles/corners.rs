@@ -6,9 +6,9 @@ use super::lanes::MAX_SHARE;
 use crate::{
     cloth::{Block, ClothParticles, MapInline, Slot, Surface},
     contact::{
-        candidates::ContactSettings,
         colliders::{ColliderSubstep, MovingCollider, NearestPoints, at, nearest},
         friction::{Impulse, first_touch},
+        particles::LaneMotion,
     },
     hierarchy::{Core, Probe},
 };
@@ -86,7 +86,7 @@ pub(crate) struct Touching {
 /// A ball's or a capsule's motion in a sub-step, for tests against triangles.
 pub(crate) struct CoreMotion<'a> {
     pub of: ColliderSubstep<'a>,
-    pub settings: &'a ContactSettings,
+    pub lanes: LaneMotion,
     /// Distance from the core at which it touches (m).
     pub reach: f32,
     /// The core at the end of the sub-step.
@@ -94,11 +94,11 @@ pub(crate) struct CoreMotion<'a> {
 }
 
 impl<'a> CoreMotion<'a> {
-    pub fn new(of: ColliderSubstep<'a>, settings: &'a ContactSettings) -> Self {
+    pub fn new(of: ColliderSubstep<'a>, lanes: LaneMotion) -> Self {
         Self {
             of,
-            settings,
-            reach: of.collider.shape.radius().unwrap_or(0.0) + settings.particle_radius,
+            lanes,
+            reach: of.collider.shape.radius().unwrap_or(0.0) + lanes.particle_radius,
             at_end: segment(of.collider, of.pose),
         }
     }
@@ -168,7 +168,7 @@ impl<'a> CoreMotion<'a> {
         }
         // A triangle that moved less than half of the reach, and is not nearer, is still on its original side.
         let is_plain = speed <= reach / 2.0 && distance >= reach / 2.0;
-        if self.settings.is_swept && !is_plain && speed.is_finite() {
+        if self.lanes.is_swept && !is_plain && speed.is_finite() {
             let tolerance = 1.0e-3 * reach;
             let hit = first_touch(speed, reach, tolerance, |part| {
                 nearest(corners.when(part), segment(part)).offset.length()

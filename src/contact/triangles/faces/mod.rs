@@ -16,7 +16,7 @@ use crate::{
         candidates::{Candidate, ContactBlock},
         colliders::ColliderShape,
         friction::FrictionBudget,
-        particles::{ContactResult, LaneMotion, Sums},
+        particles::{ContactResult, Sums},
     },
 };
 
@@ -67,7 +67,7 @@ impl TrianglePush<'_> {
     pub fn push(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
+        motion: &CoreMotion,
         from: ResumePoint,
     ) -> Option<ResumePoint> {
         let mut resume = from;
@@ -77,8 +77,8 @@ impl TrianglePush<'_> {
         };
         while resume.pass < MAX_PASSES {
             let stops = match ball {
-                Some(centre) => self.push_cells(particles, (motion, lanes), centre, &mut resume),
-                None => self.push_each(particles, (motion, lanes), &mut resume),
+                Some(centre) => self.push_cells(particles, motion, centre, &mut resume),
+                None => self.push_each(particles, motion, &mut resume),
             };
             self.found.farthest_push += self.passed * self.max_faces;
             self.passed = 0.0;
@@ -95,7 +95,7 @@ impl TrianglePush<'_> {
                 ..ResumePoint::default()
             };
         }
-        self.hold(particles, (motion, lanes));
+        self.hold(particles, motion);
         None
     }
 
@@ -103,13 +103,13 @@ impl TrianglePush<'_> {
     fn push_each(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
+        motion: &CoreMotion,
         resume: &mut ResumePoint,
     ) -> bool {
-        let push_out = lanes.push_out;
+        let odometer = motion.lanes.odometer;
         for contact in self.contacts.iter_mut() {
             // False for NaN.
-            let is_clear = lanes.odometer < contact.faces_clear_until;
+            let is_clear = odometer < contact.faces_clear_until;
             contact.are_faces_due = !is_clear;
             if !is_clear {
                 contact.faces_clear_until = f32::INFINITY;
@@ -122,7 +122,7 @@ impl TrianglePush<'_> {
             if fan.faces.is_empty() {
                 continue;
             }
-            let now = lanes.odometer + self.pushed();
+            let now = odometer + self.pushed();
             let of = &mut self.contacts[contact];
             if !of.are_faces_due && now < of.faces_clear_until {
                 continue;
@@ -133,7 +133,7 @@ impl TrianglePush<'_> {
             };
             let [clear, speed] = motion.clearance(particles.blocks(), slot, fan.corners);
             let until = if clear > 0.0 {
-                lanes.odometer * (1.0 - 1.0e-5) + clear
+                odometer * (1.0 - 1.0e-5) + clear
             } else {
                 f32::NEG_INFINITY
             };
@@ -146,7 +146,7 @@ impl TrianglePush<'_> {
                     continue;
                 }
                 let slots = fan.slots(face);
-                self.push_one(particles, motion, (contact, lane), slots, &push_out, resume);
+                self.push_one(particles, motion, (contact, lane), slots, resume);
                 if self.is_full() {
                     resume.at = (candidate.particle, which + 1);
                     return true;
@@ -177,7 +177,7 @@ impl TrianglePush<'_> {
     fn push_cells(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
+        motion: &CoreMotion,
         centre: Vec3,
         resume: &mut ResumePoint,
     ) -> bool {
@@ -197,20 +197,19 @@ impl TrianglePush<'_> {
             };
             let (blocks, from) = (particles.blocks_mut(), resume.place);
             let (contacts, budgets) = (&mut *self.contacts, &mut *self.budgets);
-            let (stop, next) =
-                push_cells(blocks, contacts, budgets, (lanes, &cells), from, &mut sums);
+            let of = (&motion.lanes, &cells);
+            let (stop, next) = push_cells(blocks, contacts, budgets, of, from, &mut sums);
             resume.place = next;
             self.passed = self.passed.max(sums.passed);
             match stop {
                 Stop::Left {
                     contact,
                     which,
-                    lanes: left,
+                    lanes,
                 } => {
-                    for lane in (0..LANES).filter(|&lane| left[lane]) {
+                    for lane in (0..LANES).filter(|&lane| lanes[lane]) {
                         let slots = slots_of(layout, &self.contacts[contact], which, lane);
-                        let at = (contact, lane);
-                        self.push_one(particles, motion, at, slots, &lanes.push_out, resume);
+                        self.push_one(particles, motion, (contact, lane), slots, resume);
                     }
                 }
                 Stop::Room => {}
@@ -226,22 +225,18 @@ impl TrianglePush<'_> {
     }
 
     /// Applies friction to the pushed particles.
-    fn hold(
-        &mut self,
-        particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
-    ) {
+    fn hold(&mut self, particles: &mut ClothParticles, motion: &CoreMotion) {
         let [start, end] = motion.at_end;
         let along = end - start;
         let core = CapsuleCore {
             axis: along.normalize_or_zero().to_array(),
             half_length: along.length() / 2.0,
-            radius: motion.reach - motion.settings.particle_radius,
+            radius: motion.reach - motion.lanes.particle_radius,
         };
         let seconds = particles.substep();
         let mut sums = Sums::default();
         let blocks = particles.blocks_mut();
-        let (contacts, budgets) = (&*self.contacts, &mut *self.budgets);
+        let (contacts, budgets, lanes) = (&*self.contacts, &mut *self.budgets, &motion.lanes);
         hold_all(blocks, contacts, budgets, &core, lanes, seconds, &mut sums);
         let farthest = self.found.farthest_push;
         self.found.add(&sums);

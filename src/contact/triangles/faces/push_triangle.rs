@@ -7,7 +7,7 @@ use crate::{
     cloth::{ClothParticles, Slot},
     contact::{
         colliders::{at, cap},
-        friction::{Contact, PushOut},
+        friction::Contact,
         triangles::corners::{CoreMotion, Corners, Touching},
     },
 };
@@ -20,7 +20,6 @@ impl TrianglePush<'_> {
         motion: &CoreMotion,
         (contact, lane): (usize, usize),
         slots: [Slot; 3],
-        push_out: &PushOut,
         resume: &mut ResumePoint,
     ) {
         let reach = motion.reach;
@@ -35,9 +34,9 @@ impl TrianglePush<'_> {
             return;
         }
         let pushed = if touch.is_swept {
-            self.push_corners(particles, &corners, &touch, motion, push_out)
+            self.push_corners(particles, &corners, &touch, motion)
         } else {
-            self.push_point(particles, &corners, &touch, motion, push_out)
+            self.push_point(particles, &corners, &touch, motion)
         };
         if pushed == 0.0 {
             return;
@@ -60,21 +59,20 @@ impl TrianglePush<'_> {
         corners: &Corners,
         touch: &Touching,
         motion: &CoreMotion,
-        push_out: &PushOut,
     ) -> f32 {
         let (weights, normal, depth) = (touch.weights, touch.normal, touch.depth);
         let Some(shares) = corners.shares(weights) else {
             return 0.0;
         };
         let point =
-            at(corners.positions, weights) + normal * (depth - motion.settings.particle_radius);
+            at(corners.positions, weights) + normal * (depth - motion.lanes.particle_radius);
         let surface = motion.of.surface_motion(point);
         let [momentum, far] = Contact {
             normal,
             depth,
             relative: at(corners.displacements, weights) - surface,
         }
-        .stopped_and_out(push_out);
+        .stopped_and_out(&motion.lanes.push_out);
         let mut farthest = 0.0_f32;
         for (corner, share) in shares.into_iter().enumerate() {
             if share > 0.0 {
@@ -94,7 +92,6 @@ impl TrianglePush<'_> {
         corners: &Corners,
         touch: &Touching,
         motion: &CoreMotion,
-        push_out: &PushOut,
     ) -> f32 {
         let normal = touch.normal;
         let mut farthest = 0.0_f32;
@@ -104,14 +101,14 @@ impl TrianglePush<'_> {
             if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
                 continue;
             }
-            let point = position + normal * (depth - motion.settings.particle_radius);
+            let point = position + normal * (depth - motion.lanes.particle_radius);
             let surface = motion.of.surface_motion(point);
             let contact = Contact {
                 normal,
                 depth,
                 relative: corners.displacements[corner] - surface,
             };
-            let [momentum, _] = contact.stopped_and_out(push_out);
+            let [momentum, _] = contact.stopped_and_out(&motion.lanes.push_out);
             // All of it at once: the collider would pass a triangle left behind.
             let push = [normal * depth, normal * momentum];
             farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
