@@ -266,14 +266,9 @@ fn push_point(
     let Some(shares) = corners.shares(weights) else {
         return (0.0, depth);
     };
-    let point = at(corners.positions, weights) + normal * (depth - motion.near.reach);
-    let surface = motion.of.surface_motion(point);
-    let push = Contact {
-        normal,
-        depth,
-        relative: at(corners.displacements, weights) - surface,
-    }
-    .push(friction, &motion.lanes.push_out);
+    let point = [corners.positions, corners.displacements].map_inline(|of| at(of, weights));
+    let contact = Contact::of(&motion.of, point, (normal, depth), motion.near.reach);
+    let push = contact.push(friction, &motion.lanes.push_out);
     let mut farthest = 0.0_f32;
     for (corner, share) in shares.into_iter().enumerate() {
         if share > 0.0 {
@@ -301,14 +296,9 @@ fn push_in_front(
         if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
             continue;
         }
-        let point = position + normal * (depth - motion.near.reach);
-        let surface = motion.of.surface_motion(point);
-        let push = Contact {
-            normal,
-            depth,
-            relative: corners.displacements[corner] - surface,
-        }
-        .push(friction, &motion.lanes.push_out);
+        let point = [position, corners.displacements[corner]];
+        let contact = Contact::of(&motion.of, point, (normal, depth), motion.near.reach);
+        let push = contact.push(friction, &motion.lanes.push_out);
         deepest = deepest.max(depth);
         let push = [push.position, push.displacement];
         let by = (&mut *given, motion.of.origin);

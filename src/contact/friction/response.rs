@@ -2,6 +2,8 @@
 
 use bevy::math::{DVec3, Vec3};
 
+use crate::contact::colliders::ColliderSubstep;
+
 /// A contact at the end of a sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contact {
@@ -21,6 +23,23 @@ pub(crate) struct Push {
 }
 
 impl Contact {
+    /// The contact of a point of the cloth, by its position and its displacement in the sub-step (m). It touches at this
+    /// `reach` from the surface (m).
+    #[inline]
+    pub fn of(
+        motion: &ColliderSubstep,
+        [position, displacement]: [Vec3; 2],
+        (normal, depth): (Vec3, f32),
+        reach: f32,
+    ) -> Self {
+        let surface = motion.surface_motion(position + normal * (depth - reach));
+        Self {
+            normal,
+            depth,
+            relative: displacement - surface,
+        }
+    }
+
     /// The stopped displacement along the normal, and the total push out including it (m).
     ///
     /// Velocity loses only the approach of this sub-step, and only that counts for friction. An older overlap is not a

@@ -190,7 +190,8 @@ fn push_left(
             }
             let (position, displacement) = (block.position(lane), block.displacement(lane));
             let nearest = of.nearest(position);
-            let hit = hit(of, motion, [position, displacement]);
+            let point = [position, displacement];
+            let hit = hit(of, motion, point);
             let (normal, depth) =
                 hit.unwrap_or((nearest.normal, particle_radius - nearest.distance));
             // Which others of a complex shape are tested depends on what is remembered.
@@ -200,13 +201,8 @@ fn push_left(
             if depth <= 0.0 {
                 continue;
             }
-            let surface = of.surface_motion(position + normal * (depth - particle_radius));
-            let push = Contact {
-                normal,
-                depth,
-                relative: displacement - surface,
-            }
-            .push(motion.friction * contact.grip[lane], &motion.push_out);
+            let push = Contact::of(of, point, (normal, depth), particle_radius)
+                .push(motion.friction * contact.grip[lane], &motion.push_out);
             let mut pushed = position + push.position;
             if hit.is_some() && shape.is_geometry() {
                 // Another part of it may be in front of the one that was hit.

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use super::{ResumePoint, TrianglePush};
 use crate::{
-    cloth::{ClothParticles, Slot},
+    cloth::{ClothParticles, MapInline, Slot},
     contact::{
         colliders::{at, cap},
         friction::Contact,
@@ -64,15 +64,10 @@ impl TrianglePush<'_> {
         let Some(shares) = corners.shares(weights) else {
             return 0.0;
         };
-        let point =
-            at(corners.positions, weights) + normal * (depth - motion.lanes.particle_radius);
-        let surface = motion.of.surface_motion(point);
-        let [momentum, far] = Contact {
-            normal,
-            depth,
-            relative: at(corners.displacements, weights) - surface,
-        }
-        .stopped_and_out(&motion.lanes.push_out);
+        let point = [corners.positions, corners.displacements].map_inline(|of| at(of, weights));
+        let radius = motion.lanes.particle_radius;
+        let contact = Contact::of(&motion.of, point, (normal, depth), radius);
+        let [momentum, far] = contact.stopped_and_out(&motion.lanes.push_out);
         let mut farthest = 0.0_f32;
         for (corner, share) in shares.into_iter().enumerate() {
             if share > 0.0 {
@@ -101,13 +96,9 @@ impl TrianglePush<'_> {
             if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
                 continue;
             }
-            let point = position + normal * (depth - motion.lanes.particle_radius);
-            let surface = motion.of.surface_motion(point);
-            let contact = Contact {
-                normal,
-                depth,
-                relative: corners.displacements[corner] - surface,
-            };
+            let point = [position, corners.displacements[corner]];
+            let radius = motion.lanes.particle_radius;
+            let contact = Contact::of(&motion.of, point, (normal, depth), radius);
             let [momentum, _] = contact.stopped_and_out(&motion.lanes.push_out);
             // All of it at once: the collider would pass a triangle left behind.
             let push = [normal * depth, normal * momentum];
