@@ -185,14 +185,10 @@ impl OffEdges<'_, '_> {
         if self.pushing.has_hidden && fan.corners.iter().all(is_pinned) {
             return 0.0;
         }
-        self.view.look(
-            particles.blocks(),
-            fan.corners,
-            &motion.to_local,
-            &motion.of,
-        );
+        let to_local = &motion.to_local;
+        (self.view).look(particles.blocks(), fan.corners, to_local, &motion.of);
         let shape = &motion.of.collider.shape;
-        let gap = shape.gap(self.view.corners()) - FLAT * near.reach;
+        let gap = shape.gap(&self.view.corners) - FLAT * near.reach;
         let clearance = gap.max(memory.clearance(candidate.particle, self.view, near));
         if clearance > motion.swept(self.view.speed) {
             return clearance;
@@ -215,10 +211,6 @@ impl OffEdges<'_, '_> {
             } else {
                 None
             };
-            let contact = match hit {
-                Some(_) => None,
-                None => known.deepest(shape, triangle, near, moved),
-            };
             let given = &mut self.found.given;
             let (index, slot) = self.pushing.place(&candidate);
             // That of the particle that owns the triangle.
@@ -226,7 +218,7 @@ impl OffEdges<'_, '_> {
             let (pushed, depth) = if let Some(hit) = hit {
                 let corners = Corners::of(particles, slots);
                 push_in_front(particles, &corners, hit, (motion, friction), given)
-            } else if let Some(contact) = contact {
+            } else if let Some(contact) = known.deepest(shape, triangle, near, moved) {
                 let corners = Corners::of(particles, slots);
                 push_point(particles, &corners, &contact, (motion, friction), given)
             } else {
@@ -237,9 +229,7 @@ impl OffEdges<'_, '_> {
             for slot in slots {
                 self.guard.note(slot, pushed);
             }
-            let blocks = particles.blocks();
-            self.view
-                .look(blocks, fan.corners, &motion.to_local, &motion.of);
+            (self.view).look(particles.blocks(), fan.corners, to_local, &motion.of);
             self.pushing.note_depth(index, slot.lane, depth);
             self.found.deepest = self.found.deepest.max(depth);
             self.farthest = self.farthest.max(pushed);
@@ -256,13 +246,8 @@ fn push_point(
     (motion, friction): (&EdgeMotion, f32),
     given: &mut Impulse,
 ) -> (f32, f32) {
-    let EdgeContact {
-        weights,
-        normal,
-        depth,
-        ..
-    } = *contact;
-    let normal = motion.of.pose.rotation * normal;
+    let (weights, depth) = (contact.weights, contact.depth);
+    let normal = motion.of.pose.rotation * contact.normal;
     let Some(shares) = corners.shares(weights) else {
         return (0.0, depth);
     };
