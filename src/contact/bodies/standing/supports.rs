@@ -147,25 +147,22 @@ impl Supports {
         }
         for (point, own) in points.iter().zip(&cloth) {
             let is_alike = |other: &ManifoldPoint| other.normal.dot(point.normal) > ALIKE;
-            let others = points
-                .iter()
-                .zip(&cloth)
-                .filter(|(other, _)| is_alike(other));
-            let cloth = own.or_else(|| others.filter_map(|(_, cloth)| *cloth).next());
+            let pairs = points.iter().zip(&cloth);
+            let mut alike = pairs.filter(|(other, _)| is_alike(other));
+            let cloth = own.or_else(|| alike.find_map(|(_, cloth)| *cloth));
             let supported = cloth.map(|cloth| place(point).support(cloth, poses));
             self.all.extend(supported);
         }
-        if self.all.len() == first[0] {
+        let found = &mut self.all[first[0]..];
+        if found.is_empty() {
             return;
         }
-        let heights = self.all[first[0]..].iter().map(|support| support.height);
+        let heights = found.iter().map(|support| support.height);
         let lowest = heights.fold(f32::INFINITY, f32::min);
         let is_close = lowest < (THICKNESS + CLOSE) * near.radius;
         self.between.extend(near.pressed([moving, below], passed));
         if self.between.len() == first[1] {
-            let corners = self.all[first[0]..]
-                .iter()
-                .flat_map(|point| point.cloth.corners);
+            let corners = found.iter().flat_map(|support| support.cloth.corners);
             self.between.extend(corners);
             self.between[first[1]..].sort_unstable();
             self.between.dedup();
@@ -173,8 +170,8 @@ impl Supports {
         let is_it = |stand: &&Stand| (stand.body, stand.ground) == (body, ground);
         let known = self.before.iter().find(is_it);
         let left = known.map_or(0.0, |known| known.left);
-        let count = (self.all.len() - first[0]) as f64;
-        for support in &mut self.all[first[0]..] {
+        let count = found.len() as f64;
+        for support in found {
             support.unspent = left / count;
         }
         self.stands.push(Stand {
