@@ -135,8 +135,8 @@ impl Before {
     /// Saves these blocks; some may be named twice.
     pub fn save(&mut self, blocks: impl Iterator<Item = usize>, particles: &ClothParticles) {
         self.0.clear();
-        self.0
-            .extend(blocks.map(|block| (block, particles.blocks()[block])));
+        let saved = blocks.map(|block| (block, particles.blocks()[block]));
+        self.0.extend(saved);
         self.0.sort_unstable_by_key(|(block, _)| *block);
         self.0.dedup_by_key(|(block, _)| *block);
     }
@@ -213,11 +213,8 @@ impl Body {
                 let mass = 1.0 / f64::from(inverse_mass);
                 let offset = position.as_dvec3() - centre;
                 places.add(mass, offset, position - old.position(lane));
-                moves.add(
-                    mass,
-                    offset,
-                    new.displacement(lane) - old.displacement(lane),
-                );
+                let moved = new.displacement(lane) - old.displacement(lane);
+                moves.add(mass, offset, moved);
             }
         }
         let (place_part, go, turn) = places.shared(&self.mass);
@@ -225,13 +222,11 @@ impl Body {
         for (index, old) in &before.0 {
             let new = &mut particles.blocks_mut()[*index];
             for lane in 0..LANES {
-                let position = old.position(lane).lerp(new.position(lane), place_part);
-                let displacement = old
-                    .displacement(lane)
-                    .lerp(new.displacement(lane), move_part);
-                if new.position(lane) != old.position(lane) {
-                    new.set_position(lane, position);
-                    new.set_displacement(lane, displacement);
+                let [from, to] = [old.position(lane), new.position(lane)];
+                if to != from {
+                    new.set_position(lane, from.lerp(to, place_part));
+                    let [from, to] = [old.displacement(lane), new.displacement(lane)];
+                    new.set_displacement(lane, from.lerp(to, move_part));
                 }
             }
         }

@@ -110,10 +110,8 @@ impl MovingCollider {
             let displacement = mesh.displacement_at(from, before.rotation.inverse() * offset);
             offset += before.rotation * displacement * (to - from);
         }
-        (
-            Vec3::from(after.translation) + rotation * offset,
-            rotation * normal,
-        )
+        let carried = Vec3::from(after.translation) + rotation * offset;
+        (carried, rotation * normal)
     }
 
     /// A probe of the collider along its whole path, inflated by `margin` (m), for a search among particles of a radius

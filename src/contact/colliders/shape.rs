@@ -51,10 +51,8 @@ impl ColliderShape {
         match *self {
             Self::Geometry(_) | Self::Deforming(_) => {
                 let [lower, upper] = self.bounds();
-                let pose = Isometry3d::new(
-                    centre + pose.rotation * lower.midpoint(upper),
-                    pose.rotation,
-                );
+                let middle = centre + pose.rotation * lower.midpoint(upper);
+                let pose = Isometry3d::new(middle, pose.rotation);
                 let half_size = (upper - lower) / 2.0;
                 (Core::Cuboid { pose, half_size }, 0.0)
             }
@@ -69,13 +67,8 @@ impl ColliderShape {
             Self::Cuboid { half_size } => (Core::Cuboid { pose, half_size }, 0.0),
             Self::HalfSpace => {
                 let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
-                (
-                    Core::HalfSpace {
-                        point: centre,
-                        normal,
-                    },
-                    0.0,
-                )
+                let point = centre;
+                (Core::HalfSpace { point, normal }, 0.0)
             }
         }
     }

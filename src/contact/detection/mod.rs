@@ -117,9 +117,8 @@ impl Detection {
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
-        let narrow_phase = settings
-            .narrow_phase
-            .of(collider, surface, settings.particle_radius);
+        let particle_radius = settings.particle_radius;
+        let narrow_phase = (settings.narrow_phase).of(collider, surface, particle_radius);
         let cover = match narrow_phase {
             NarrowPhase::Triangles | NarrowPhase::Auto => longest_edge,
             NarrowPhase::Particles => 0.0,
@@ -127,7 +126,7 @@ impl Detection {
         // Rounding of a position in each sub-step may add this to its displacement.
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
         let rounding = (farthest + collider.farthest_distance(cloth)) * 1.0e-5;
-        let probe = collider.probe(margin + cover + rounding, settings.particle_radius, cloth);
+        let probe = collider.probe(margin + cover + rounding, particle_radius, cloth);
         (probe, narrow_phase)
     }
 
@@ -167,8 +166,7 @@ impl Detection {
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) {
         let of = (&*self.surface, particles, self.particle_radius);
-        self.embedding
-            .find((id, collider), was_embedded, found, of, others);
+        (self.embedding).find((id, collider), was_embedded, found, of, others);
     }
 
     /// Whether cloth is embedded in a collider in this tick.

@@ -194,9 +194,7 @@ impl Detection {
         {
             let mut moving = touch.collider.clone();
             // A wave that hits the side of a cup does not carry it.
-            let up = self
-                .supports
-                .up_of(touch.id, &self.colliders, substep.end());
+            let up = (self.supports).up_of(touch.id, &self.colliders, substep.end());
             let may_carry = |out: Vec3| up.is_none_or(|up| out.dot(up) < -SIDEWAYS);
             let [kept, gone] = body.share(&self.before, particles, &mut moving, substep, may_carry);
             given.scale(f64::from(kept));

@@ -48,13 +48,7 @@ pub(crate) struct EdgeClearance {
 impl EdgeClearance {
     /// The clearance of a tested triangle, up to a `slack` (m).
     pub fn new(test: &EdgeTest, slack: f32) -> Self {
-        let EdgeTest {
-            plane,
-            middle,
-            longest,
-            reach,
-            ..
-        } = *test;
+        let (plane, middle, longest) = (test.plane, test.middle, test.longest);
         let [v, w] = plane.gradients;
         let steepness = Vec3::new((v + w).length(), v.length(), w.length());
         Self {
@@ -63,7 +57,7 @@ impl EdgeClearance {
             middle,
             // The middle is at two thirds of each median, which is shorter than the longest side.
             size: (2.0 / 3.0) * (1.0 + 3.0 * BEYOND) * longest,
-            reach,
+            reach: test.reach,
             deepest: DEEPEST * longest,
             slack,
             rounding: 1.0e-6 * (middle.length() + longest),

@@ -212,9 +212,7 @@ fn push_left(
             let block = &mut particles.blocks_mut()[contact.block as usize];
             block.set_position(lane, pushed);
             block.set_displacement(lane, displacement + push.displacement);
-            found
-                .given
-                .add(pushed - of.origin, push.displacement, inverse_mass);
+            (found.given).add(pushed - of.origin, push.displacement, inverse_mass);
             found.deepest = found.deepest.max(depth.min(thickness));
             found.farthest_push = found.farthest_push.max(pushed.distance(position));
             found.area += contact.area[lane];

@@ -67,10 +67,8 @@ impl<'a> ContactStep<'a> {
         [moving, ground]: [&ColliderSubstep; 2],
         (mass, centre, particles): (&BodyMass, DVec3, &ClothParticles),
     ) -> StandingPoint {
-        let [above, below] = [
-            moving.pose * support.on_body,
-            ground.pose * support.on_ground,
-        ];
+        let above = moving.pose * support.on_body;
+        let below = ground.pose * support.on_ground;
         let normal = ground.pose.rotation * support.normal;
         let overlap = THICKNESS * self.settings.particle_radius - (above - below).dot(normal);
         let own = moving.surface_motion(above);

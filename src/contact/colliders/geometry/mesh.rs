@@ -39,26 +39,20 @@ pub(in crate::contact::colliders) fn check_triangles(
     triangles: &[[u32; 3]],
 ) -> Result<(), ClothError> {
     check_vertices(vertices)?;
-    let is_beyond = |triangle: &[u32; 3]| {
-        triangle
-            .iter()
-            .any(|&corner| corner as usize >= vertices.len())
-    };
+    let count = vertices.len();
+    let is_beyond = |triangle: &[u32; 3]| triangle.iter().any(|&corner| corner as usize >= count);
     if let Some(triangle) = triangles.iter().position(is_beyond) {
         return Err(ClothError::TriangleOutOfRange {
             triangle,
             corners: triangles[triangle],
-            vertices: vertices.len(),
+            vertices: count,
         });
     }
-    let area: f32 = triangles
-        .iter()
-        .map(|triangle| {
-            let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
-            (b - a).cross(c - a).length()
-        })
-        .sum();
-    if area <= 0.0 {
+    let areas = triangles.iter().map(|triangle| {
+        let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+        (b - a).cross(c - a).length()
+    });
+    if areas.sum::<f32>() <= 0.0 {
         return Err(ClothError::MeshWithoutArea {
             triangles: triangles.len(),
         });
@@ -85,12 +79,10 @@ pub(crate) fn build(
         return Err(ClothError::MeshWithoutArea { triangles: count });
     };
     let edges = MeshEdges::of(mesh.indices());
-    let sides = if ground {
-        MeshSides::Ground
-    } else if edges.are_closed() {
-        MeshSides::Closed
-    } else {
-        MeshSides::Open
+    let sides = match edges.are_closed() {
+        _ if ground => MeshSides::Ground,
+        true => MeshSides::Closed,
+        false => MeshSides::Open,
     };
     if sides == MeshSides::Closed && volume(mesh.vertices(), mesh.indices()) < 0.0 {
         mesh.reverse();

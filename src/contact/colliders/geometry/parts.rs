@@ -281,13 +281,14 @@ fn are_flat(points: &[Vec3]) -> bool {
         return true;
     };
     let farthest = |measure: &dyn Fn(Vec3) -> f64| {
-        let measured = points.iter().map(|&point| (measure(point), point));
-        measured.fold(
-            (0.0, first),
-            |best, next| {
-                if next.0 > best.0 { next } else { best }
-            },
-        )
+        let mut best = (0.0, first);
+        for &point in points {
+            let measured = measure(point);
+            if measured > best.0 {
+                best = (measured, point);
+            }
+        }
+        best
     };
     let from = |point: Vec3| point.as_dvec3() - first.as_dvec3();
     let (size, second) = farthest(&|point| from(point).length());

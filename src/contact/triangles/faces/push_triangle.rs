@@ -120,10 +120,8 @@ impl TrianglePush<'_> {
         let by = (&mut self.found.given, motion.of.origin);
         let distance = corners.push(corner, particles, [displacement, momentum], by);
         let block = slot.block as u32;
-        if let Ok(at) = self
-            .contacts
-            .binary_search_by_key(&block, |contact| contact.block)
-        {
+        let at = (self.contacts).binary_search_by_key(&block, |contact| contact.block);
+        if let Ok(at) = at {
             self.budgets[at].add_one(slot.lane, momentum.to_array());
         }
         distance
