@@ -257,7 +257,7 @@ fn push_point(
     let mut farthest = 0.0_f32;
     for (corner, share) in shares.into_iter().enumerate() {
         if share > 0.0 {
-            let push = [push.position * share, push.displacement * share];
+            let push = push.map_inline(|by| by * share);
             let by = (&mut *given, motion.of.origin);
             farthest = farthest.max(corners.push(corner, particles, push, by));
         }
@@ -285,7 +285,6 @@ fn push_in_front(
         let contact = Contact::of(&motion.of, point, (normal, depth), motion.near.reach);
         let push = contact.push(friction, &motion.lanes.push_out);
         deepest = deepest.max(depth);
-        let push = [push.position, push.displacement];
         let by = (&mut *given, motion.of.origin);
         farthest = farthest.max(corners.push(corner, particles, push, by));
     }

@@ -15,13 +15,6 @@ pub(crate) struct Contact {
     pub relative: Vec3,
 }
 
-/// Corrections of position and displacement (m).
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Push {
-    pub position: Vec3,
-    pub displacement: Vec3,
-}
-
 impl Contact {
     /// The contact of a point of the cloth, by its position and its displacement in the sub-step (m). It touches at this
     /// `reach` from the surface (m).
@@ -50,8 +43,9 @@ impl Contact {
     }
 
     /// Pushes out along the normal, and applies Coulomb friction: the tangential displacement shrinks by up to μ times
-    /// the normal one. An older overlap is released without gaining speed, at a limited rate.
-    pub fn push(&self, friction: f32, push_out: &PushOut) -> Push {
+    /// the normal one. An older overlap is released without gaining speed, at a limited rate. Returns the corrections of
+    /// position and displacement (m).
+    pub fn push(&self, friction: f32, push_out: &PushOut) -> [Vec3; 2] {
         let Self {
             normal, relative, ..
         } = *self;
@@ -63,10 +57,8 @@ impl Contact {
         } else {
             1.0
         };
-        Push {
-            position: normal * far - tangential * grip,
-            displacement: normal * stopped - tangential * grip,
-        }
+        let held = tangential * grip;
+        [normal * far - held, normal * stopped - held]
     }
 }
 

@@ -201,9 +201,9 @@ fn push_left(
             if depth <= 0.0 {
                 continue;
             }
-            let push = Contact::of(of, point, (normal, depth), particle_radius)
+            let [push, change] = Contact::of(of, point, (normal, depth), particle_radius)
                 .push(motion.friction * contact.grip[lane], &motion.push_out);
-            let mut pushed = position + push.position;
+            let mut pushed = position + push;
             if hit.is_some() && shape.is_geometry() {
                 // Another part of it may be in front of the one that was hit.
                 let Nearest { distance, normal } = of.nearest(pushed);
@@ -211,8 +211,8 @@ fn push_left(
             }
             let block = &mut particles.blocks_mut()[contact.block as usize];
             block.set_position(lane, pushed);
-            block.set_displacement(lane, displacement + push.displacement);
-            (found.given).add(pushed - of.origin, push.displacement, inverse_mass);
+            block.set_displacement(lane, displacement + change);
+            (found.given).add(pushed - of.origin, change, inverse_mass);
             found.deepest = found.deepest.max(depth.min(thickness));
             found.farthest_push = found.farthest_push.max(pushed.distance(position));
             found.area += contact.area[lane];
