@@ -72,11 +72,8 @@ fn hold(
         view[DY + l] += fy;
         view[DZ + l] += fz;
         let budget = budget - slip * grip;
-        let budget = if is_held && budget > NONE_LEFT {
-            budget
-        } else {
-            0.0
-        };
+        let is_left = is_held && budget > NONE_LEFT;
+        let budget = if is_left { budget } else { 0.0 };
         left[l] = budget;
         held.normal[0][l] = nx;
         held.normal[1][l] = ny;

@@ -107,12 +107,9 @@ fn push_eight(
         let is_left = is_cell[l] & (!is_wide | is_met | !is_far);
         left[l] = is_left;
         let depth = cells.reach - distance;
-        is_pushed[l] = is_cell[l] & !is_left & (depth > 0.0);
-        let depth = if is_cell[l] & !is_left {
-            depth
-        } else {
-            f32::NEG_INFINITY
-        };
+        let is_tested = is_cell[l] & !is_left;
+        is_pushed[l] = is_tested & (depth > 0.0);
+        let depth = if is_tested { depth } else { f32::NEG_INFINITY };
         contact.depth[l] = larger(depth, contact.depth[l]);
         clear[l] = if is_left { f32::NEG_INFINITY } else { -depth };
     }
