@@ -15,6 +15,8 @@
 //! the surface instead, the body came to rest as soon, but without friction it fell through: its particles slipped
 //! aside.) Where cloth lies on something, bodies stand on that instead: see the module `standing`.
 
+use std::ops::Range;
+
 use bevy::math::{DVec3, Mat3, Vec3};
 
 use crate::{
@@ -55,11 +57,11 @@ impl Carrier {
 /// The particles that carry a body, in the order of the cloth.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Carriers {
-    all: Vec<Carrier>,
+    pub all: Vec<Carrier>,
     /// Scratch memory for the next list.
     next: Vec<Carrier>,
     /// Range of their loads among those of the particles.
-    loads: [usize; 2],
+    loads: Range<usize>,
     /// Ratio of the body's mass to that of all particles of a row and a column through the carriers.
     ratio: f32,
 }
@@ -67,7 +69,7 @@ pub(crate) struct Carriers {
 impl Carriers {
     pub fn clear(&mut self) {
         self.all.clear();
-        self.loads = [0; 2];
+        self.loads = 0..0;
         self.ratio = 0.0;
     }
 
@@ -81,10 +83,6 @@ impl Carriers {
         } else {
             0.0
         }
-    }
-
-    pub fn as_slice(&self) -> &[Carrier] {
-        &self.all
     }
 
     /// Restores the carriers of an earlier tick.
@@ -192,19 +190,17 @@ impl Carriers {
                 particles.loads_mut().push(load);
             }
         }
-        self.loads = [from, particles.loads_mut().len()];
+        self.loads = from..particles.loads_mut().len();
     }
 
     /// Removes the loads. Returns the linear and angular impulse of the sub-step times its duration (kg·m, kg·m²),
     /// about a centre (m).
     pub fn detach_load(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
         let [mut push, mut turn] = [DVec3::ZERO; 2];
-        let [from, to] = std::mem::take(&mut self.loads);
-        for index in from..to {
+        for index in std::mem::take(&mut self.loads) {
             let Load {
                 slot, mass, moved, ..
             } = particles.loads_mut()[index];
-
             let given = f64::from(mass) * moved.as_dvec3();
             let place = particles.blocks()[slot.block].position(slot.lane);
             push += given;
