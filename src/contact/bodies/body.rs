@@ -318,11 +318,8 @@ impl Body {
         let (end, expected) = (moving.pose_at(1.0), self.start.pose_at(1.0));
         self.change.translation = moving.to - self.start.to;
         let rotation = end.rotation * expected.rotation.inverse();
-        let rotation = if rotation.w < 0.0 {
-            -rotation
-        } else {
-            rotation
-        };
+        let is_opposite = rotation.w < 0.0;
+        let rotation = if is_opposite { -rotation } else { rotation };
         self.change.rotation = rotation.to_scaled_axis();
         let swing = turn.length() * (moving.shape.core_extent() + arm.length());
         let swing = if swing > 0.0 { swing } else { 0.0 };

@@ -78,7 +78,8 @@ impl Carriers {
     pub fn load_ratio(&self, held: f32, fall: f32) -> f32 {
         // Without a fall there is no weight to hold.
         let part = held / fall.max(f32::MIN_POSITIVE);
-        if fall > 0.0 && part > 0.0 {
+        let is_held = fall > 0.0 && part > 0.0;
+        if is_held {
             self.ratio * part.min(1.0)
         } else {
             0.0
@@ -93,8 +94,7 @@ impl Carriers {
 
     fn position(&self, slot: Slot) -> Result<usize, usize> {
         let key = |slot: Slot| (slot.block, slot.lane);
-        self.all
-            .binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
+        (self.all).binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
     }
 
     /// Notes the particles of a block that the body has just pushed and that may carry it, by the outward normal that `out`
@@ -133,8 +133,7 @@ impl Carriers {
     pub fn add_noted(&mut self) {
         if !self.next.is_empty() {
             self.all.append(&mut self.next);
-            self.all
-                .sort_unstable_by_key(|carrier| (carrier.slot.block, carrier.slot.lane));
+            (self.all).sort_unstable_by_key(|carrier| (carrier.slot.block, carrier.slot.lane));
         }
     }
 
@@ -153,11 +152,10 @@ impl Carriers {
             let is_left = carrier.left > 0;
             carrier.left = carrier.left.saturating_sub(1);
             carrier.pressed *= 1.0 - NEWEST;
+            let mut others = others.clone();
             is_left
                 && block.is_some_and(|block| block.inverse_mass(lane) > 0.0)
-                && !others
-                    .clone()
-                    .any(|other| other.position(carrier.slot).is_ok())
+                && !others.any(|other| other.position(carrier.slot).is_ok())
         });
         let (mut sum, mut pressed, mut largest) = (0.0, 0.0, 0.0_f32);
         for carrier in &self.all {
@@ -170,11 +168,8 @@ impl Carriers {
         }
         // The load hangs by as many chains as there are in both directions.
         let count = self.all.len() as f32;
-        self.ratio = if count > 0.0 {
-            count.sqrt() / (2.0 * sum * mass.inverse_mass)
-        } else {
-            0.0
-        };
+        let ratio = count.sqrt() / (2.0 * sum * mass.inverse_mass);
+        self.ratio = if count > 0.0 { ratio } else { 0.0 };
         let most = (mass.inverse_mass + largest).recip();
         let part = (most / pressed).min(f32::MAX);
         let from = particles.loads_mut().len();

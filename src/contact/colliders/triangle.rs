@@ -17,11 +17,8 @@ pub(crate) struct NearestPoints {
 
 impl NearestPoints {
     fn nearer(self, other: Self) -> Self {
-        if other.offset.length_squared() < self.offset.length_squared() {
-            other
-        } else {
-            self
-        }
+        let is_nearer = other.offset.length_squared() < self.offset.length_squared();
+        if is_nearer { other } else { self }
     }
 }
 
@@ -173,12 +170,9 @@ pub(crate) fn nearest_of_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f32,
     let (aa, ee, f) = (ab.length_squared(), cd.length_squared(), cd.dot(ca));
     let (along, across) = (ab.dot(ca), ab.dot(cd));
     let parallel = aa * ee - across * across;
-    let clamp = |value: f32| {
-        if value.is_finite() {
-            value.clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
+    let clamp = |value: f32| match value.is_finite() {
+        true => value.clamp(0.0, 1.0),
+        false => 0.0,
     };
     let mut s = if parallel > 0.0 {
         clamp((across * f - along * ee) / parallel)

@@ -78,11 +78,8 @@ impl Embedding {
         (surface, particles, particle_radius): (&Surface, &ClothParticles, f32),
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) {
-        let begins_at = if was_embedded {
-            0.0
-        } else {
-            particle_radius + DEEP * surface.spacing().shortest
-        };
+        let deep = particle_radius + DEEP * surface.spacing().shortest;
+        let begins_at = if was_embedded { 0.0 } else { deep };
         // Only a half-space has one way out for all.
         if collider.shape == ColliderShape::HalfSpace
             || (self.pieces).collect(collider, found, particles, particle_radius) <= begins_at

@@ -61,9 +61,7 @@ impl Pieces {
         self.inside.clear();
         let (pose, mut deepest) = (collider.from, 0.0_f32);
         let shape = &collider.shape;
-        let bounds = shape
-            .is_geometry()
-            .then(|| (pose.inverse(), shape.bounds()));
+        let bounds = (shape.is_geometry()).then(|| (pose.inverse(), shape.bounds()));
         for &particle in found {
             let place = particles.position_at(particle as usize);
             let is_beyond = bounds.is_some_and(|(inverse, [low, high])| {

@@ -68,11 +68,8 @@ impl<'a> EdgeMotion<'a> {
     /// Displacement relative to the shape for the swept test (m); 0 without one.
     #[inline]
     fn swept(&self, speed: f32) -> f32 {
-        if self.lanes.is_swept && speed > self.fast && speed.is_finite() {
-            speed
-        } else {
-            0.0
-        }
+        let is_fast = self.lanes.is_swept && speed > self.fast && speed.is_finite();
+        if is_fast { speed } else { 0.0 }
     }
 
     /// The nearest edge at the first contact of a fast triangle.

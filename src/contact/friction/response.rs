@@ -52,11 +52,8 @@ impl Contact {
         let tangential = relative - normal * normal.dot(relative);
         let [stopped, far] = self.stopped_and_out(push_out);
         let slip = tangential.length();
-        let grip = if slip > friction * stopped {
-            friction * stopped / slip
-        } else {
-            1.0
-        };
+        let most = friction * stopped;
+        let grip = if slip > most { most / slip } else { 1.0 };
         let held = tangential * grip;
         [normal * far - held, normal * stopped - held]
     }

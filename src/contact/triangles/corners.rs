@@ -203,11 +203,8 @@ fn segment(collider: &MovingCollider, pose: Isometry3d) -> [Vec3; 2] {
 #[inline]
 fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
     let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
-    if normal.dot(a - middle) < 0.0 {
-        -normal
-    } else {
-        normal
-    }
+    let is_inwards = normal.dot(a - middle) < 0.0;
+    if is_inwards { -normal } else { normal }
 }
 
 /// Whether a probe meets a triangle that any of the `found` particles owns, at the current positions. For a box or a
@@ -224,9 +221,8 @@ pub fn meets_triangles(
         Core::Cuboid { .. } | Core::HalfSpace { .. } => return !found.is_empty(),
     };
     let reach = probe.reach() as f32;
-    let mut faces = found
-        .iter()
-        .flat_map(|&particle| surface.faces().of(particle));
+    let owners = found.iter();
+    let mut faces = owners.flat_map(|&owner| surface.faces().of(owner));
     faces.any(|face| {
         let corners = face.map_inline(|corner| particles.position_at(corner as usize));
         nearest(corners, segment).offset.length_squared() < reach * reach

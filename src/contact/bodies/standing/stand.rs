@@ -82,9 +82,8 @@ impl<'a> ContactStep<'a> {
             false => older,
         };
         let corners = support.cloth.corners.iter().zip(support.cloth.weights);
-        let coefficient: f32 = corners
-            .map(|(corner, weight)| self.friction(particles, *corner) * weight)
-            .sum();
+        let each = corners.map(|(corner, weight)| self.friction(particles, *corner) * weight);
+        let coefficient: f32 = each.sum();
         let (arm, normal) = (above.as_dvec3() - centre, normal.as_dvec3());
         StandingPoint {
             stand: at[0],

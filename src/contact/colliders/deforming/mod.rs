@@ -288,11 +288,10 @@ impl Deformed {
             let mut sum = Vec3::ZERO;
             for &face in faces {
                 let corners = self.corners(face, part);
-                let at = triangles[face as usize]
-                    .iter()
-                    .position(|&corner| corner == vertex)?;
-                if beside[face as usize][at] == NONE || beside[face as usize][(at + 2) % 3] == NONE
-                {
+                let mut vertices = triangles[face as usize].iter();
+                let at = vertices.position(|&corner| corner == vertex)?;
+                let others = beside[face as usize];
+                if others[at] == NONE || others[(at + 2) % 3] == NONE {
                     return None;
                 }
                 let [a, b, c] = [0, 1, 2].map_inline(|next| corners[(at + next) % 3]);

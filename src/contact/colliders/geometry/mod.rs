@@ -54,17 +54,14 @@ impl ColliderGeometry {
     /// Builds it from one or more parts.
     pub(crate) fn of(parts: Parts) -> Self {
         let Parts { solids, edges } = parts;
-        let bounds = solids
-            .iter()
-            .map(|solid| solid.bounds)
-            .reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
-            .unwrap_or_default();
+        let boxes = solids.iter().map(|solid| solid.bounds);
+        let bounds = boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
         let thickness = solids.iter().map(Solid::thickness);
         let thickness = thickness.fold(f32::INFINITY, f32::min);
         Self(Arc::new(Geometry {
             edges: SharpEdges::of(edges),
             solids,
-            bounds,
+            bounds: bounds.unwrap_or_default(),
             thickness,
         }))
     }

@@ -132,8 +132,9 @@ impl TrianglePush<'_> {
                 lane,
             };
             let [clear, speed] = motion.clearance(particles.blocks(), slot, fan.corners);
+            let until = odometer * (1.0 - 1.0e-5) + clear;
             let until = if clear > 0.0 {
-                odometer * (1.0 - 1.0e-5) + clear
+                until
             } else {
                 f32::NEG_INFINITY
             };
