@@ -272,11 +272,8 @@ impl ColliderShape {
 fn around(offset: Vec3, radius: f32) -> Nearest {
     let distance = offset.length();
     // A particle exactly at the centre may leave in any direction.
-    let normal = if distance > 0.0 {
-        offset / distance
-    } else {
-        Vec3::Y
-    };
+    let away = offset / distance;
+    let normal = if distance > 0.0 { away } else { Vec3::Y };
     Nearest {
         distance: distance - radius,
         normal,

@@ -124,11 +124,9 @@ impl<'a> CoreMotion<'a> {
         let [start, end] = self.at_end;
         let along = end - start;
         let part = ((point - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        let nearest = if part > 0.0 {
-            start + along * part
-        } else {
-            start
-        };
+        let beside = start + along * part;
+        // A core of zero length is its first end.
+        let nearest = if part > 0.0 { beside } else { start };
         // Larger by rounding errors and by the tolerance of a touch.
         let near = (1.0 + 4.0e-3) * self.reach + extent;
         let rounding = 1.0e-5 * (near + point.length());
