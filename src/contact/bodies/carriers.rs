@@ -193,10 +193,9 @@ impl Carriers {
     pub fn detach_load(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
         let [mut push, mut turn] = [DVec3::ZERO; 2];
         for index in std::mem::take(&mut self.loads) {
-            let Load {
-                slot, mass, moved, ..
-            } = particles.loads_mut()[index];
-            let given = f64::from(mass) * moved.as_dvec3();
+            let load = &particles.loads_mut()[index];
+            let (slot, moved) = (load.slot, load.moved);
+            let given = f64::from(load.mass) * moved.as_dvec3();
             let place = particles.blocks()[slot.block].position(slot.lane);
             push += given;
             turn += (place.as_dvec3() - centre).cross(given);

@@ -185,16 +185,14 @@ impl Pieces {
         particle_radius: f32,
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) -> Option<Vec3> {
-        let Piece {
-            normal, out, count, ..
-        } = self.all[piece];
+        let of = self.all[piece];
         let members = || {
             let members = self.inside.iter();
             let own = members.filter(move |inside| inside.piece as usize == piece);
-            own.step_by(count.div_ceil(SAMPLES))
+            own.step_by(of.count.div_ceil(SAMPLES))
         };
-        let normal = normal.normalize_or_zero();
-        let directions = [normal, -normal, out.normalize_or_zero()];
+        let normal = of.normal.normalize_or_zero();
+        let directions = [normal, -normal, of.out.normalize_or_zero()];
         let mut best = (f32::INFINITY, None);
         for direction in directions.into_iter().filter(|way| *way != Vec3::ZERO) {
             let (mut longest, mut sampled, mut blocked) = (0.0_f32, 0, 0);

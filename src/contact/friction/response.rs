@@ -46,9 +46,7 @@ impl Contact {
     /// the normal one. An older overlap is released without gaining speed, at a limited rate. Returns the corrections of
     /// position and displacement (m).
     pub fn push(&self, friction: f32, push_out: &PushOut) -> [Vec3; 2] {
-        let Self {
-            normal, relative, ..
-        } = *self;
+        let (normal, relative) = (self.normal, self.relative);
         let tangential = relative - normal * normal.dot(relative);
         let [stopped, far] = self.stopped_and_out(push_out);
         let slip = tangential.length();

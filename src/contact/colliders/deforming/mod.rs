@@ -153,9 +153,7 @@ impl Deformed {
         let ends = from.iter().zip(to);
         let moved = ends.map(|(from, to)| from.distance_squared(*to));
         self.farthest_move = moved.fold(0.0, f32::max).sqrt();
-        let Topology {
-            triangles, nodes, ..
-        } = &*self.topology;
+        let (triangles, nodes) = (&self.topology.triangles, &self.topology.nodes);
         self.boxes.resize(nodes.len(), Boxes::EMPTY);
         for (index, node) in nodes.iter().enumerate().rev() {
             self.boxes[index] = if node.faces.is_empty() {
@@ -278,9 +276,7 @@ impl Deformed {
     /// A vector that points out of the surface where a point of it is nearest to others: the normal of a face, the mean of
     /// the two of an edge, or of those around a vertex by their angles (Bærentzen and Aanæs 2005). `None` at a border.
     fn out(&self, part: f32, of: &OnFace) -> Option<Vec3> {
-        let Topology {
-            triangles, beside, ..
-        } = &*self.topology;
+        let (triangles, beside) = (&self.topology.triangles, &self.topology.beside);
         let own = self.normal(of.corners).normalize_or_zero();
         let zeros = of.weights.map_inline(|weight| weight == 0.0);
         let around = |vertex: u32| {
