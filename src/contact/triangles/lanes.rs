@@ -197,11 +197,8 @@ pub(crate) fn pushes(
         let mobility = larger(mobility, least);
         let is_pushed = is_pushed[l] & (mobility > 0.0);
         let distance = near.distance[l];
-        let (nx, ny, nz) = (
-            near.offset[0][l] / distance,
-            near.offset[1][l] / distance,
-            near.offset[2][l] / distance,
-        );
+        let [x, y, z] = &near.offset;
+        let (nx, ny, nz) = (x[l] / distance, y[l] / distance, z[l] / distance);
         let (ax, ay, az) = (nx * radius, ny * radius, nz * radius);
         let [mx, my, mz] = motion.of_surface([ax, ay, az]);
         let rx = u * a[DX + l] + v * b[DX + l] + w * c[DX + l] - mx;
@@ -249,11 +246,8 @@ pub(crate) fn move_corner(
     for l in 0..LANES {
         let share = share[l];
         let (far, stopped) = (pushes.far[l] * share, pushes.stopped[l] * share);
-        let (nx, ny, nz) = (
-            pushes.normal[0][l],
-            pushes.normal[1][l],
-            pushes.normal[2][l],
-        );
+        let normal = &pushes.normal;
+        let (nx, ny, nz) = (normal[0][l], normal[1][l], normal[2][l]);
         let (mx, my, mz) = (nx * stopped, ny * stopped, nz * stopped);
         view[X + l] += nx * far;
         view[Y + l] += ny * far;
