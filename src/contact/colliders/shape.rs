@@ -222,15 +222,10 @@ impl ColliderShape {
     #[inline]
     pub(crate) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
         let offset = point - Vec3::from(pose.translation);
+        let local = || pose.rotation.inverse() * offset;
         match *self {
-            Self::Geometry(ref geometry) => {
-                let nearest = geometry.nearest(pose.rotation.inverse() * offset, f32::MAX);
-                nearest.turned(pose.rotation)
-            }
-            Self::Deforming(ref mesh) => {
-                let nearest = mesh.nearest(1.0, pose.rotation.inverse() * offset);
-                nearest.turned(pose.rotation)
-            }
+            Self::Geometry(ref of) => of.nearest(local(), f32::MAX).turned(pose.rotation),
+            Self::Deforming(ref mesh) => mesh.nearest(1.0, local()).turned(pose.rotation),
             Self::Ball { radius } => around(offset, radius),
             Self::Capsule {
                 radius,
@@ -241,7 +236,7 @@ impl ColliderShape {
                 around(offset - axis * along, radius)
             }
             Self::Cuboid { half_size } => {
-                let local = pose.rotation.inverse() * offset;
+                let local = local();
                 let outside = local - local.clamp(-half_size, half_size);
                 let (distance, normal) = if outside == Vec3::ZERO {
                     let left = half_size - local.abs();
@@ -253,17 +248,12 @@ impl ColliderShape {
                     let distance = outside.length();
                     (distance, outside / distance)
                 };
-                Nearest {
-                    distance,
-                    normal: pose.rotation * normal,
-                }
+                Nearest { distance, normal }.turned(pose.rotation)
             }
             Self::HalfSpace => {
                 let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
-                Nearest {
-                    distance: offset.dot(normal),
-                    normal,
-                }
+                let distance = offset.dot(normal);
+                Nearest { distance, normal }
             }
         }
     }
