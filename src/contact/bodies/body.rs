@@ -96,10 +96,6 @@ pub(crate) struct Body {
     pub carriers: Carriers,
 }
 
-/// Blocks of particles before a push.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Before(Vec<(usize, Block)>);
-
 /// Linear and angular impulse times the sub-step, given by particles (kg·m, kg·m²) about a centre, and `Σ m Δx²`
 /// (kg·m²).
 #[derive(Debug, Default, Clone, Copy)]
@@ -128,17 +124,6 @@ impl PushSum {
             return (1.0, DVec3::ZERO, DVec3::ZERO);
         }
         (part as f32, -part * go, -part * turn)
-    }
-}
-
-impl Before {
-    /// Saves these blocks; some may be named twice.
-    pub fn save(&mut self, blocks: impl Iterator<Item = usize>, particles: &ClothParticles) {
-        self.0.clear();
-        let saved = blocks.map(|block| (block, particles.blocks()[block]));
-        self.0.extend(saved);
-        self.0.sort_unstable_by_key(|(block, _)| *block);
-        self.0.dedup_by_key(|(block, _)| *block);
     }
 }
 
@@ -189,10 +174,11 @@ impl Body {
 
     /// Shares a push between particles, which were pushed as if the body were static, and the body. Returns the
     /// fraction of the momentum that the particles keep, and the body's displacement (m). `may_carry` tells whether a
-    /// particle may carry the body, by the body's outward normal there.
+    /// particle may carry the body, by the body's outward normal there. `before` are the blocks of all that may have been
+    /// pushed, as they were.
     pub fn share(
         &mut self,
-        before: &Before,
+        before: &[(usize, Block)],
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
         substep: SubStep,
@@ -201,7 +187,7 @@ impl Body {
         let (pose, centre) = self.centre(moving, substep.end());
         let out = |place: Vec3| moving.shape.nearest(pose, place).normal;
         let (mut places, mut moves) = (PushSum::default(), PushSum::default());
-        for (index, old) in &before.0 {
+        for (index, old) in before {
             let new = &particles.blocks()[*index];
             self.carriers.note(*index, [old, new], out, &may_carry);
             for lane in 0..LANES {
@@ -219,7 +205,7 @@ impl Body {
         }
         let (place_part, go, turn) = places.shared(&self.mass);
         let (move_part, push, spin) = moves.shared(&self.mass);
-        for (index, old) in &before.0 {
+        for (index, old) in before {
             let new = &mut particles.blocks_mut()[*index];
             for lane in 0..LANES {
                 let [from, to] = [old.position(lane), new.position(lane)];

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
-    bodies::{Before, Body, BodyChange, Carriers, StandingResponse, Supports},
+    bodies::{Body, BodyChange, Carriers, StandingResponse, Supports},
     candidates::{
         Candidates, ContactPoint, ContactSettings, NarrowPhase, PushedParticles, SavedCandidates,
         TestedFaces, Touch,
@@ -25,7 +25,7 @@ use super::{
     edges::ShapeCache,
 };
 use crate::{
-    cloth::{ClothParticles, Lanes, Surface},
+    cloth::{Block, ClothParticles, Lanes, Surface},
     hierarchy::{Probe, TopDownQuery},
     solver::SubStep,
 };
@@ -57,7 +57,8 @@ pub struct Detection {
     bodies: Vec<Body>,
     /// Memory of earlier ones.
     spare: Vec<Carriers>,
-    before: Before,
+    /// Blocks of particles before a body's push.
+    before: Vec<(usize, Block)>,
     supports: Supports,
     shapes: ShapeCache,
 }

@@ -81,8 +81,11 @@ impl Detection {
         if self.bodies.iter().any(|body| body.id == touch.id) {
             let contacts = &self.candidates.blocks[touch.of.blocks.clone()];
             let blocks = contacts.iter().map(|contact| contact.block as usize);
-            let embedded = self.embedding.blocks(touch.id);
-            self.before.save(blocks.chain(embedded), particles);
+            let blocks = blocks.chain(self.embedding.blocks(touch.id));
+            self.before.clear();
+            (self.before).extend(blocks.map(|block| (block, particles.blocks()[block])));
+            self.before.sort_unstable_by_key(|(block, _)| *block);
+            self.before.dedup_by_key(|(block, _)| *block);
         }
     }
 
