@@ -152,12 +152,9 @@ fn cells_of(layout: Layout, block: u32) -> [bool; LANES] {
 #[inline(always)]
 fn corners_of(layout: Layout, contact: &ContactBlock, index: usize) -> [[Corner; 3]; 2] {
     let (block, strip) = (contact.block as usize, layout.strip as usize);
-    let is_last = (block + 1).is_multiple_of(strip);
-    let beside = if is_last {
-        block + 1 - strip
-    } else {
-        block + 1
-    };
+    let next = block + 1;
+    let is_last = next.is_multiple_of(strip);
+    let beside = if is_last { next - strip } else { next };
     let [right, below, below_right] = contact.around.map_inline(|contact| contact as usize);
     let corner = |block, contact, is_shifted| Corner {
         block,
