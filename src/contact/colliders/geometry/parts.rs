@@ -1,11 +1,9 @@
 //! Converts shapes of parry into parts of a geometry.
 
-use std::sync::Arc;
-
 use bevy::math::Vec3;
 use parry3d::{
     math::Pose,
-    shape::{SharedShape, TriMesh, Triangle, TypedShape},
+    shape::{SharedShape, Triangle, TypedShape},
 };
 
 use super::{
@@ -38,23 +36,26 @@ impl Parts {
         is_ground: bool,
     ) -> Result<(), ClothError> {
         let (mesh, sides, edges) = mesh::build(triangles, is_ground)?;
-        self.add_built(pose, mesh.into(), sides);
+        self.add_solid(pose, SolidKind::Mesh(mesh.into(), sides));
         self.add_edges(pose, &edges, 0.0);
         Ok(())
     }
 
-    fn add_built(&mut self, pose: Pose, mesh: Arc<TriMesh>, sides: MeshSides) {
-        let bounds = mesh.aabb(&pose);
+    fn add_solid(&mut self, pose: Pose, kind: SolidKind) {
+        let bounds = match &kind {
+            SolidKind::Convex(shape) => shape.compute_aabb(&pose),
+            SolidKind::Mesh(mesh, _) => mesh.aabb(&pose),
+        };
         // The ground reaches as deep as it is wide, for particles that have got below it.
         let extents = bounds.extents();
-        let below = match sides {
-            MeshSides::Ground => Vec3::Y * extents.x.max(extents.z),
-            MeshSides::Open | MeshSides::Closed => Vec3::ZERO,
+        let below = match &kind {
+            SolidKind::Mesh(_, MeshSides::Ground) => Vec3::Y * extents.x.max(extents.z),
+            _ => Vec3::ZERO,
         };
         self.solids.push(Solid {
             pose,
             bounds: [bounds.mins - below, bounds.maxs],
-            kind: SolidKind::Mesh(mesh, sides),
+            kind,
         });
     }
 
@@ -71,7 +72,7 @@ impl Parts {
         {
             return Err(ClothError::FlatHull { points });
         }
-        self.add_built(pose, mesh.into(), sides);
+        self.add_solid(pose, SolidKind::Mesh(mesh.into(), sides));
         self.add_edges(pose, &edges, 0.0);
         Ok(())
     }
@@ -92,16 +93,6 @@ impl Parts {
         self.add_hull(Pose::IDENTITY, hull)
     }
 
-    /// Adds a shape whose nearest point parry computes, with the edges of triangles on it.
-    fn add_convex(&mut self, pose: Pose, shape: SharedShape) {
-        let bounds = shape.compute_aabb(&pose);
-        self.solids.push(Solid {
-            pose,
-            bounds: [bounds.mins, bounds.maxs],
-            kind: SolidKind::Convex(shape),
-        });
-    }
-
     /// A convex shape, given by triangles on it or in it, and its radius around those (m).
     fn add_round(
         &mut self,
@@ -111,13 +102,13 @@ impl Parts {
         radius: f32,
     ) -> Result<(), ClothError> {
         let (.., edges) = mesh::build(triangles, false)?;
-        self.add_convex(pose, shape);
+        self.add_solid(pose, SolidKind::Convex(shape));
         self.add_edges(pose, &edges, radius);
         Ok(())
     }
 
     fn add_line(&mut self, pose: Pose, shape: SharedShape, ends: [Vec3; 2], radius: f32) {
-        self.add_convex(pose, shape);
+        self.add_solid(pose, SolidKind::Convex(shape));
         let line = SharpEdge {
             ends,
             outward: Vec3::ZERO,
@@ -142,11 +133,7 @@ impl Parts {
         let Self { solids, edges } = parts;
         self.add_edges(pose, &edges, 0.0);
         for solid in solids {
-            let pose = pose * solid.pose;
-            match solid.kind {
-                SolidKind::Convex(shape) => self.add_convex(pose, shape),
-                SolidKind::Mesh(mesh, sides) => self.add_built(pose, mesh, sides),
-            }
+            self.add_solid(pose * solid.pose, solid.kind);
         }
     }
 
@@ -195,12 +182,12 @@ impl Parts {
                 for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
                     (edge.round, edge.part) = (cylinder.radius, 1.0);
                 }
-                self.add_convex(pose, shape);
+                self.add_solid(pose, SolidKind::Convex(shape));
                 self.add_edges(pose, &edges, 0.0);
             }
             TypedShape::Cone(cone) => {
                 let (.., edges) = mesh::build(cone.to_trimesh(SIDES), false)?;
-                self.add_convex(pose, shape);
+                self.add_solid(pose, SolidKind::Convex(shape));
                 self.add_edges(pose, &in_pieces(&edges, cone.radius), 0.0);
             }
             TypedShape::RoundCuboid(round) => {
