@@ -6,7 +6,7 @@ use super::carriers::Carriers;
 use crate::{
     cloth::{Block, ClothParticles, LANES, MapInline},
     contact::{
-        colliders::{BodyMass, ColliderSubstep, MovingCollider},
+        colliders::{BodyMass, ColliderSubstep, MovingCollider, swing},
         friction::Impulse,
     },
     solver::SubStep,
@@ -83,21 +83,18 @@ impl BodyChange {
 pub(crate) struct Body {
     /// Index of the caller's collider.
     pub id: usize,
-    mass: BodyMass,
+    pub(super) mass: BodyMass,
     /// Its motion without any contact.
     start: MovingCollider,
     /// Its motion when candidates were last searched for.
     searched: MovingCollider,
-    change: BodyChange,
+    /// The change of its motion so far in the tick.
+    pub change: BodyChange,
     /// The part of that by what it stands on.
-    held: BodyChange,
+    pub held: BodyChange,
     /// The particles that carry it while springs are solved.
     pub carriers: Carriers,
 }
-
-/// Blocks of particles before a push.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Before(Vec<(usize, Block)>);
 
 /// Linear and angular impulse times the sub-step, given by particles (kg·m, kg·m²) about a centre, and `Σ m Δx²`
 /// (kg·m²).
@@ -130,17 +127,6 @@ impl PushSum {
     }
 }
 
-impl Before {
-    /// Saves these blocks; some may be named twice.
-    pub fn save(&mut self, blocks: impl Iterator<Item = usize>, particles: &ClothParticles) {
-        self.0.clear();
-        self.0
-            .extend(blocks.map(|block| (block, particles.blocks()[block])));
-        self.0.sort_unstable_by_key(|(block, _)| *block);
-        self.0.dedup_by_key(|(block, _)| *block);
-    }
-}
-
 impl Body {
     /// The body of a collider, if the collider is dynamic. Reuses the memory of an earlier body.
     pub fn of(id: usize, collider: &MovingCollider, spare: &mut Vec<Carriers>) -> Option<Self> {
@@ -156,20 +142,6 @@ impl Body {
             held: BodyChange::default(),
             carriers,
         })
-    }
-
-    pub(super) fn mass(&self) -> &BodyMass {
-        &self.mass
-    }
-
-    /// The change of its motion so far in the tick.
-    pub fn change(&self) -> BodyChange {
-        self.change
-    }
-
-    /// The part of that change by what it stands on.
-    pub fn held(&self) -> BodyChange {
-        self.held
     }
 
     /// Notes that what it stands on has changed its motion since.
@@ -194,22 +166,19 @@ impl Body {
         let deviation = |part: f32| {
             let (expected, is) = (self.searched.pose_at(part), moving.pose_at(part));
             let turned = is.rotation.angle_between(expected.rotation);
-            let swing = if turned > 0.0 {
-                turned * moving.shape.core_extent()
-            } else {
-                0.0
-            };
-            Vec3::from(is.translation).distance(expected.translation.into()) + swing
+            let gone = Vec3::from(is.translation).distance(expected.translation.into());
+            gone + swing(turned, moving.shape.core_extent())
         };
         deviation(passed).max(deviation(1.0))
     }
 
     /// Shares a push between particles, which were pushed as if the body were static, and the body. Returns the
     /// fraction of the momentum that the particles keep, and the body's displacement (m). `may_carry` tells whether a
-    /// particle may carry the body, by the body's outward normal there.
+    /// particle may carry the body, by the body's outward normal there. `before` are the blocks of all that may have been
+    /// pushed, as they were.
     pub fn share(
         &mut self,
-        before: &Before,
+        before: &[(usize, Block)],
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
         substep: SubStep,
@@ -218,7 +187,7 @@ impl Body {
         let (pose, centre) = self.centre(moving, substep.end());
         let out = |place: Vec3| moving.shape.nearest(pose, place).normal;
         let (mut places, mut moves) = (PushSum::default(), PushSum::default());
-        for (index, old) in &before.0 {
+        for (index, old) in before {
             let new = &particles.blocks()[*index];
             self.carriers.note(*index, [old, new], out, &may_carry);
             for lane in 0..LANES {
@@ -230,25 +199,20 @@ impl Body {
                 let mass = 1.0 / f64::from(inverse_mass);
                 let offset = position.as_dvec3() - centre;
                 places.add(mass, offset, position - old.position(lane));
-                moves.add(
-                    mass,
-                    offset,
-                    new.displacement(lane) - old.displacement(lane),
-                );
+                let moved = new.displacement(lane) - old.displacement(lane);
+                moves.add(mass, offset, moved);
             }
         }
         let (place_part, go, turn) = places.shared(&self.mass);
         let (move_part, push, spin) = moves.shared(&self.mass);
-        for (index, old) in &before.0 {
+        for (index, old) in before {
             let new = &mut particles.blocks_mut()[*index];
             for lane in 0..LANES {
-                let position = old.position(lane).lerp(new.position(lane), place_part);
-                let displacement = old
-                    .displacement(lane)
-                    .lerp(new.displacement(lane), move_part);
-                if new.position(lane) != old.position(lane) {
-                    new.set_position(lane, position);
-                    new.set_displacement(lane, displacement);
+                let [from, to] = [old.position(lane), new.position(lane)];
+                if to != from {
+                    new.set_position(lane, from.lerp(to, place_part));
+                    let [from, to] = [old.displacement(lane), new.displacement(lane)];
+                    new.set_displacement(lane, from.lerp(to, move_part));
                 }
             }
         }
@@ -340,11 +304,8 @@ impl Body {
         let (end, expected) = (moving.pose_at(1.0), self.start.pose_at(1.0));
         self.change.translation = moving.to - self.start.to;
         let rotation = end.rotation * expected.rotation.inverse();
-        let rotation = if rotation.w < 0.0 {
-            -rotation
-        } else {
-            rotation
-        };
+        let is_opposite = rotation.w < 0.0;
+        let rotation = if is_opposite { -rotation } else { rotation };
         self.change.rotation = rotation.to_scaled_axis();
         let swing = turn.length() * (moving.shape.core_extent() + arm.length());
         let swing = if swing > 0.0 { swing } else { 0.0 };

@@ -15,6 +15,8 @@
 //! the surface instead, the body came to rest as soon, but without friction it fell through: its particles slipped
 //! aside.) Where cloth lies on something, bodies stand on that instead: see the module `standing`.
 
+use std::ops::Range;
+
 use bevy::math::{DVec3, Mat3, Vec3};
 
 use crate::{
@@ -55,11 +57,11 @@ impl Carrier {
 /// The particles that carry a body, in the order of the cloth.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Carriers {
-    all: Vec<Carrier>,
+    pub all: Vec<Carrier>,
     /// Scratch memory for the next list.
     next: Vec<Carrier>,
     /// Range of their loads among those of the particles.
-    loads: [usize; 2],
+    loads: Range<usize>,
     /// Ratio of the body's mass to that of all particles of a row and a column through the carriers.
     ratio: f32,
 }
@@ -67,7 +69,7 @@ pub(crate) struct Carriers {
 impl Carriers {
     pub fn clear(&mut self) {
         self.all.clear();
-        self.loads = [0; 2];
+        self.loads = 0..0;
         self.ratio = 0.0;
     }
 
@@ -76,15 +78,12 @@ impl Carriers {
     pub fn load_ratio(&self, held: f32, fall: f32) -> f32 {
         // Without a fall there is no weight to hold.
         let part = held / fall.max(f32::MIN_POSITIVE);
-        if fall > 0.0 && part > 0.0 {
+        let is_held = fall > 0.0 && part > 0.0;
+        if is_held {
             self.ratio * part.min(1.0)
         } else {
             0.0
         }
-    }
-
-    pub fn as_slice(&self) -> &[Carrier] {
-        &self.all
     }
 
     /// Restores the carriers of an earlier tick.
@@ -95,8 +94,7 @@ impl Carriers {
 
     fn position(&self, slot: Slot) -> Result<usize, usize> {
         let key = |slot: Slot| (slot.block, slot.lane);
-        self.all
-            .binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
+        (self.all).binary_search_by_key(&key(slot), |carrier| key(carrier.slot))
     }
 
     /// Notes the particles of a block that the body has just pushed and that may carry it, by the outward normal that `out`
@@ -135,8 +133,7 @@ impl Carriers {
     pub fn add_noted(&mut self) {
         if !self.next.is_empty() {
             self.all.append(&mut self.next);
-            self.all
-                .sort_unstable_by_key(|carrier| (carrier.slot.block, carrier.slot.lane));
+            (self.all).sort_unstable_by_key(|carrier| (carrier.slot.block, carrier.slot.lane));
         }
     }
 
@@ -155,11 +152,10 @@ impl Carriers {
             let is_left = carrier.left > 0;
             carrier.left = carrier.left.saturating_sub(1);
             carrier.pressed *= 1.0 - NEWEST;
+            let mut others = others.clone();
             is_left
                 && block.is_some_and(|block| block.inverse_mass(lane) > 0.0)
-                && !others
-                    .clone()
-                    .any(|other| other.position(carrier.slot).is_ok())
+                && !others.any(|other| other.position(carrier.slot).is_ok())
         });
         let (mut sum, mut pressed, mut largest) = (0.0, 0.0, 0.0_f32);
         for carrier in &self.all {
@@ -172,45 +168,34 @@ impl Carriers {
         }
         // The load hangs by as many chains as there are in both directions.
         let count = self.all.len() as f32;
-        self.ratio = if count > 0.0 {
-            count.sqrt() / (2.0 * sum * mass.inverse_mass)
-        } else {
-            0.0
-        };
+        let ratio = count.sqrt() / (2.0 * sum * mass.inverse_mass);
+        self.ratio = if count > 0.0 { ratio } else { 0.0 };
         let most = (mass.inverse_mass + largest).recip();
         let part = (most / pressed).min(f32::MAX);
         let from = particles.loads_mut().len();
         // Not so if one is NaN.
         if pressed > 0.0 && most > 0.0 {
-            for &Carrier {
-                slot,
-                normal,
-                pressed,
-                ..
-            } in &self.all
-            {
+            for carrier in &self.all {
+                let slot = carrier.slot;
                 let block = &particles.blocks()[slot.block];
-                let part = (part * pressed).min(MAX_LOAD);
+                let part = (part * carrier.pressed).min(MAX_LOAD);
                 let mass = part / block.inverse_mass(slot.lane);
                 let surface = surface(block.position(slot.lane));
-                let load = Load::new(slot, mass, normal, surface);
+                let load = Load::new(slot, mass, carrier.normal, surface);
                 particles.loads_mut().push(load);
             }
         }
-        self.loads = [from, particles.loads_mut().len()];
+        self.loads = from..particles.loads_mut().len();
     }
 
     /// Removes the loads. Returns the linear and angular impulse of the sub-step times its duration (kg·m, kg·m²),
     /// about a centre (m).
     pub fn detach_load(&mut self, particles: &mut ClothParticles, centre: DVec3) -> [DVec3; 2] {
         let [mut push, mut turn] = [DVec3::ZERO; 2];
-        let [from, to] = std::mem::take(&mut self.loads);
-        for index in from..to {
-            let Load {
-                slot, mass, moved, ..
-            } = particles.loads_mut()[index];
-
-            let given = f64::from(mass) * moved.as_dvec3();
+        for index in std::mem::take(&mut self.loads) {
+            let load = &particles.loads_mut()[index];
+            let (slot, moved) = (load.slot, load.moved);
+            let given = f64::from(load.mass) * moved.as_dvec3();
             let place = particles.blocks()[slot.block].position(slot.lane);
             push += given;
             turn += (place.as_dvec3() - centre).cross(given);

@@ -5,7 +5,7 @@ mod body;
 mod carriers;
 mod standing;
 
+pub(crate) use body::Body;
 pub use body::BodyChange;
-pub(crate) use body::{Before, Body};
 pub(crate) use carriers::{Carrier, Carriers};
-pub(crate) use standing::{ContactStep, Near, Stand, StandingResult, Supports};
+pub(crate) use standing::{ContactStep, Near, Stand, StandingResponse, Supports};

@@ -192,13 +192,9 @@ impl Candidates {
             }
             contact.area[lane] = surface.area_of(candidate.particle as usize);
             if layout.has_cells && candidate.has_faces {
-                let strip = layout.strip as usize;
-                let is_last = (block + 1).is_multiple_of(strip);
-                let beside = if is_last {
-                    block + 1 - strip
-                } else {
-                    block + 1
-                };
+                let (strip, next) = (layout.strip as usize, block + 1);
+                let is_last = next.is_multiple_of(strip);
+                let beside = if is_last { next - strip } else { next };
                 let around = [beside, block + strip, beside + strip];
                 contact.around = around.map_inline(|block| self.marks[block] - first[1] as u32);
             }

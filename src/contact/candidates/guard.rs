@@ -77,11 +77,8 @@ impl Guard {
 
     #[inline]
     fn moved(&self, around: &[Slot]) -> f32 {
-        let mut most = 0.0;
-        for slot in around {
-            most = larger(most, self.moved[slot.block][slot.lane]);
-        }
-        most
+        let each = around.iter().map(|slot| self.moved[slot.block][slot.lane]);
+        each.fold(0.0, larger)
     }
 }
 

@@ -30,10 +30,11 @@ impl SavedCandidates {
             }
             let blocks = &candidates.blocks[touch.of.blocks.clone()];
             let budgets = &candidates.budgets[touch.of.budgets.clone()];
-            let each = blocks.iter().zip(budgets);
-            let active = each.filter(|(_, held)| held.is_active);
-            self.budgets
-                .extend(active.map(|(contact, held)| (id, contact.block, *held)));
+            for (contact, held) in blocks.iter().zip(budgets) {
+                if held.is_active {
+                    self.budgets.push((id, contact.block, *held));
+                }
+            }
         }
     }
 

@@ -8,7 +8,6 @@ use parry3d::{
 };
 
 use super::shape::ColliderShape;
-use crate::cloth::MapInline;
 
 /// A point of a contact manifold.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
@@ -75,23 +74,19 @@ impl Manifold {
 
     /// Keeps the deepest point, and those that are farthest from each other.
     fn thin_out(&mut self) {
-        let by_distance = |a: &usize, b: &usize| {
-            let [a, b] = [a, b].map_inline(|at| self.points[*at].distance);
-            a.total_cmp(&b)
-        };
+        let distance = |at: usize| self.points[at].distance;
+        let by_distance = |a: &usize, b: &usize| distance(*a).total_cmp(&distance(*b));
         if let Some(deepest) = (0..self.points.len()).min_by(by_distance) {
             self.points.swap(0, deepest);
         }
         for kept in 1..self.points.len().min(MOST_POINTS) {
-            let apart = |point: &ManifoldPoint| {
-                let others = self.points[..kept].iter();
-                let squares = others.map(|other| other.on_second.distance_squared(point.on_second));
+            let apart = |at: usize| {
+                let others = self.points[..kept].iter().map(|other| other.on_second);
+                let squares = others.map(|other| other.distance_squared(self.points[at].on_second));
                 squares.fold(f32::INFINITY, f32::min)
             };
-            let farthest = (kept..self.points.len()).max_by(|&a, &b| {
-                let [a, b] = [a, b].map_inline(|at| apart(&self.points[at]));
-                a.total_cmp(&b)
-            });
+            let by_apart = |a: &usize, b: &usize| apart(*a).total_cmp(&apart(*b));
+            let farthest = (kept..self.points.len()).max_by(by_apart);
             self.points.swap(kept, farthest.unwrap_or(kept));
         }
         self.points.truncate(MOST_POINTS);

@@ -23,7 +23,6 @@ impl BodyMass {
     pub fn turned(&self, rotation: Quat) -> Self {
         let axes = Mat3::from_quat(rotation);
         Self {
-            inverse_mass: self.inverse_mass,
             inverse_inertia: axes * self.inverse_inertia * axes.transpose(),
             centre: rotation * self.centre,
             // Equal in all directions.

@@ -25,7 +25,7 @@ pub(crate) use geometry::SharpEdge;
 pub(crate) use manifold::{MOST_POINTS, Manifold, ManifoldPoint};
 pub use mass::BodyMass;
 pub use moving::MovingCollider;
-pub(crate) use moving::{ColliderSubstep, moving_of};
+pub(crate) use moving::{ColliderSubstep, moving_of, swing};
 pub(crate) use nearest::Nearest;
 pub use shape::ColliderShape;
 pub use source::SharedCollider;

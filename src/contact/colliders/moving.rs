@@ -23,6 +23,11 @@ pub struct MovingCollider {
     pub body: Option<BodyMass>,
 }
 
+/// Largest displacement of a point within an extent (m) by a turn (rad): 0 without one, even if the extent is infinite.
+pub(crate) fn swing(turn: f32, extent: f32) -> f32 {
+    if turn > 0.0 { turn * extent } else { 0.0 }
+}
+
 /// The collider with an ID.
 pub(crate) fn moving_of(
     colliders: &[(usize, MovingCollider)],
@@ -83,23 +88,13 @@ impl MovingCollider {
     /// Largest displacement of its surface in the tick by translation, rotation and deformation (m): cloth that sticks to it is
     /// dragged that far. For a rotating half-space, only points within `within` of its origin count (m).
     pub fn max_surface_travel(&self, within: f32) -> f32 {
-        let turn = self.turn.length();
-        let swing = if turn > 0.0 {
-            turn * self.shape.extent().min(within)
-        } else {
-            0.0
-        };
-        self.travel() + swing + self.shape.deformation()
+        let extent = self.shape.extent().min(within);
+        self.travel() + swing(self.turn.length(), extent) + self.shape.deformation()
     }
 
     /// Largest displacement of any point of its core by rotation alone in the tick (m): 0 for a ball.
     pub(crate) fn swing(&self) -> f32 {
-        let turn = self.turn.length();
-        if turn > 0.0 {
-            turn * self.shape.core_extent()
-        } else {
-            0.0
-        }
+        swing(self.turn.length(), self.shape.core_extent())
     }
 
     /// Carries a point (m) and a normal along with its motion between two fractions of the tick. A ball does not turn
@@ -115,10 +110,8 @@ impl MovingCollider {
             let displacement = mesh.displacement_at(from, before.rotation.inverse() * offset);
             offset += before.rotation * displacement * (to - from);
         }
-        (
-            Vec3::from(after.translation) + rotation * offset,
-            rotation * normal,
-        )
+        let carried = Vec3::from(after.translation) + rotation * offset;
+        (carried, rotation * normal)
     }
 
     /// A probe of the collider along its whole path, inflated by `margin` (m), for a search among particles of a radius
@@ -132,11 +125,7 @@ impl MovingCollider {
                 (Core::Point(self.to), radius)
             }
             ColliderShape::Ball { radius } => (Core::Segment([self.start(), self.to]), radius),
-            ColliderShape::Capsule { .. }
-            | ColliderShape::Cuboid { .. }
-            | ColliderShape::HalfSpace
-            | ColliderShape::Geometry(_)
-            | ColliderShape::Deforming(_) => {
+            _ => {
                 let pose = self.pose_at(0.5);
                 let (core, radius) = self.shape.core(pose);
                 // Particles may leave the sphere by the margin. The core of a mesh that deforms is around all of that.

@@ -13,6 +13,7 @@ pub(crate) struct Nearest {
 
 impl Nearest {
     /// The same in a frame that is turned.
+    #[inline]
     pub fn turned(self, rotation: Quat) -> Self {
         Self {
             normal: rotation * self.normal,

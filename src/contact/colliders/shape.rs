@@ -51,10 +51,8 @@ impl ColliderShape {
         match *self {
             Self::Geometry(_) | Self::Deforming(_) => {
                 let [lower, upper] = self.bounds();
-                let pose = Isometry3d::new(
-                    centre + pose.rotation * lower.midpoint(upper),
-                    pose.rotation,
-                );
+                let middle = centre + pose.rotation * lower.midpoint(upper);
+                let pose = Isometry3d::new(middle, pose.rotation);
                 let half_size = (upper - lower) / 2.0;
                 (Core::Cuboid { pose, half_size }, 0.0)
             }
@@ -69,13 +67,8 @@ impl ColliderShape {
             Self::Cuboid { half_size } => (Core::Cuboid { pose, half_size }, 0.0),
             Self::HalfSpace => {
                 let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
-                (
-                    Core::HalfSpace {
-                        point: centre,
-                        normal,
-                    },
-                    0.0,
-                )
+                let point = centre;
+                (Core::HalfSpace { point, normal }, 0.0)
             }
         }
     }
@@ -120,9 +113,7 @@ impl ColliderShape {
         match *self {
             Self::Ball { .. } => 0.0,
             Self::Capsule { half_length, .. } => half_length,
-            Self::Cuboid { .. } | Self::HalfSpace | Self::Geometry(_) | Self::Deforming(_) => {
-                self.extent()
-            }
+            _ => self.extent(),
         }
     }
 
@@ -160,7 +151,7 @@ impl ColliderShape {
     pub(crate) fn edge(&self, index: u32) -> Option<SharpEdge> {
         match self {
             Self::Cuboid { half_size } => Some(boxes::edge(*half_size, index)),
-            Self::Geometry(geometry) => Some(geometry.edge(index)),
+            Self::Geometry(geometry) => Some(*geometry.edges().get(index)),
             _ => None,
         }
     }
@@ -179,7 +170,7 @@ impl ColliderShape {
                     visit(index, &boxes::edge(*half_size, index));
                 }
             }
-            Self::Geometry(geometry) => geometry.edges_near(within, smooth, visit),
+            Self::Geometry(geometry) => geometry.edges().near(within, smooth, visit),
             _ => {}
         }
     }
@@ -189,7 +180,7 @@ impl ColliderShape {
     pub(crate) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
         match self {
             Self::Cuboid { half_size } => boxes::edge_distance(*half_size, point),
-            Self::Geometry(geometry) => geometry.edge_distance(point, within, smooth),
+            Self::Geometry(geometry) => geometry.edges().distance(point, within, smooth),
             _ => f32::INFINITY,
         }
     }
@@ -231,15 +222,10 @@ impl ColliderShape {
     #[inline]
     pub(crate) fn nearest(&self, pose: Isometry3d, point: Vec3) -> Nearest {
         let offset = point - Vec3::from(pose.translation);
+        let local = || pose.rotation.inverse() * offset;
         match *self {
-            Self::Geometry(ref geometry) => {
-                let nearest = geometry.nearest(pose.rotation.inverse() * offset, f32::MAX);
-                nearest.turned(pose.rotation)
-            }
-            Self::Deforming(ref mesh) => {
-                let nearest = mesh.nearest(1.0, pose.rotation.inverse() * offset);
-                nearest.turned(pose.rotation)
-            }
+            Self::Geometry(ref of) => of.nearest(local(), f32::MAX).turned(pose.rotation),
+            Self::Deforming(ref mesh) => mesh.nearest(1.0, local()).turned(pose.rotation),
             Self::Ball { radius } => around(offset, radius),
             Self::Capsule {
                 radius,
@@ -250,7 +236,7 @@ impl ColliderShape {
                 around(offset - axis * along, radius)
             }
             Self::Cuboid { half_size } => {
-                let local = pose.rotation.inverse() * offset;
+                let local = local();
                 let outside = local - local.clamp(-half_size, half_size);
                 let (distance, normal) = if outside == Vec3::ZERO {
                     let left = half_size - local.abs();
@@ -262,17 +248,12 @@ impl ColliderShape {
                     let distance = outside.length();
                     (distance, outside / distance)
                 };
-                Nearest {
-                    distance,
-                    normal: pose.rotation * normal,
-                }
+                Nearest { distance, normal }.turned(pose.rotation)
             }
             Self::HalfSpace => {
                 let normal = (pose.rotation * Vec3::Y).normalize_or(Vec3::Y);
-                Nearest {
-                    distance: offset.dot(normal),
-                    normal,
-                }
+                let distance = offset.dot(normal);
+                Nearest { distance, normal }
             }
         }
     }
@@ -281,11 +262,8 @@ impl ColliderShape {
 fn around(offset: Vec3, radius: f32) -> Nearest {
     let distance = offset.length();
     // A particle exactly at the centre may leave in any direction.
-    let normal = if distance > 0.0 {
-        offset / distance
-    } else {
-        Vec3::Y
-    };
+    let away = offset / distance;
+    let normal = if distance > 0.0 { away } else { Vec3::Y };
     Nearest {
         distance: distance - radius,
         normal,

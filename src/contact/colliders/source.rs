@@ -32,7 +32,7 @@ struct Made {
 }
 
 #[derive(Debug)]
-enum Source {
+pub(super) enum Source {
     /// Loaded from a file, which cannot store any of these.
     Nothing,
     Hull(Vec<Vec3>),
@@ -60,31 +60,11 @@ impl Default for SharedCollider {
 }
 
 impl SharedCollider {
-    fn new(source: Source) -> Self {
+    pub(super) fn new(source: Source) -> Self {
         Self(Arc::new(Made {
             source,
             built: OnceLock::new(),
         }))
-    }
-
-    pub(crate) fn hull(points: Vec<Vec3>) -> Self {
-        Self::new(Source::Hull(points))
-    }
-
-    pub(crate) fn triangles(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Self {
-        Self::new(Source::Triangles(vertices, triangles))
-    }
-
-    pub(crate) fn height_field(heights: Vec<f32>, columns: usize, size: Vec3) -> Self {
-        Self::new(Source::HeightField {
-            heights,
-            columns,
-            size,
-        })
-    }
-
-    pub(crate) fn parry(shape: SharedShape) -> Self {
-        Self::new(Source::Parry(shape))
     }
 
     /// Whether it is this same shape of parry.
@@ -97,19 +77,16 @@ impl SharedCollider {
     /// time.
     pub(crate) fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         check_scale(scale)?;
+        let is_world_sized = matches!(self.0.source, Source::Parry(_));
         if let Some((first, built)) = self.0.built.get()
             // Two scales are equal up to the rounding of a transform.
-            && (first.abs_diff_eq(scale, 1.0e-5 * first.length()) || self.is_world_sized())
+            && (first.abs_diff_eq(scale, 1.0e-5 * first.length()) || is_world_sized)
         {
             return Ok(built.clone());
         }
         let built = self.0.source.build(scale)?;
         self.0.built.get_or_init(|| (scale, built.clone()));
         Ok(built)
-    }
-
-    fn is_world_sized(&self) -> bool {
-        matches!(self.0.source, Source::Parry(_))
     }
 
     /// Pose of its frame in the collider's frame, for poses inside a parry shape that ours do not have.
@@ -246,8 +223,9 @@ mod tests {
     /// An invalid scale does not affect a valid one.
     #[test]
     fn a_bad_scale_is_not_remembered() {
-        let ball = SharedCollider::parry(SharedShape::ball(0.5));
-        let hull = SharedCollider::hull(vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+        let ball = SharedCollider::new(Source::Parry(SharedShape::ball(0.5)));
+        let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let hull = SharedCollider::new(Source::Hull(corners));
         for shared in [ball, hull] {
             for bad in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY] {
                 assert!(shared.scaled(bad).is_err(), "{shared:?}");

@@ -17,11 +17,8 @@ pub(crate) struct NearestPoints {
 
 impl NearestPoints {
     fn nearer(self, other: Self) -> Self {
-        if other.offset.length_squared() < self.offset.length_squared() {
-            other
-        } else {
-            self
-        }
+        let is_nearer = other.offset.length_squared() < self.offset.length_squared();
+        if is_nearer { other } else { self }
     }
 }
 
@@ -110,9 +107,9 @@ pub(crate) fn nearest(triangle: [Vec3; 3], segment: [Vec3; 2]) -> NearestPoints 
     // NaN of a segment that is a point.
     let along = triangle.map_inline(|corner| (corner - start).dot(span) / square);
     if along.iter().all(|along| *along <= 0.0) {
-        nearest_to_end(triangle, start, 0.0)
+        nearest_along(triangle, start, 0.0)
     } else if along.iter().all(|along| *along >= 1.0) {
-        nearest_to_end(triangle, end, 1.0)
+        nearest_along(triangle, end, 1.0)
     } else if along.iter().all(|along| (0.0..=1.0).contains(along)) {
         // Seen along the segment, they are those of a triangle and a point.
         let seen = [0, 1, 2].map_inline(|corner| (triangle[corner] - start) - span * along[corner]);
@@ -128,23 +125,23 @@ pub(crate) fn nearest(triangle: [Vec3; 3], segment: [Vec3; 2]) -> NearestPoints 
     }
 }
 
-/// The point of a triangle that is nearest to an end of a segment.
-fn nearest_to_end(triangle: [Vec3; 3], end: Vec3, along: f32) -> NearestPoints {
-    let weights = nearest_to_point(triangle, end);
+/// The point of a triangle that is nearest to a point `along` a segment.
+fn nearest_along(triangle: [Vec3; 3], point: Vec3, along: f32) -> NearestPoints {
+    let weights = nearest_to_point(triangle, point);
     NearestPoints {
         weights,
-        offset: at(triangle, weights) - end,
+        offset: at(triangle, weights) - point,
         along,
     }
 }
 
 /// The nearest points of a triangle and a segment: of all pairs of corner, edge and face with an end or the segment.
 fn nearest_of_parts(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPoints {
-    let mut found = nearest_to_end(triangle, start, 0.0);
+    let mut found = nearest_along(triangle, start, 0.0);
     if start == end {
         return found;
     }
-    found = found.nearer(nearest_to_end(triangle, end, 1.0));
+    found = found.nearer(nearest_along(triangle, end, 1.0));
     for (from, to) in [(0, 1), (1, 2), (2, 0)] {
         let (s, t) = nearest_of_segments([triangle[from], triangle[to]], [start, end]);
         let mut weights = [0.0; 3];
@@ -162,13 +159,7 @@ fn nearest_of_parts(triangle: [Vec3; 3], [start, end]: [Vec3; 2]) -> NearestPoin
     let (before, after) = ((start - a).dot(normal), (end - a).dot(normal));
     if before * after < 0.0 {
         let along = before / (before - after);
-        let point = start.lerp(end, along);
-        let weights = nearest_to_point(triangle, point);
-        found = found.nearer(NearestPoints {
-            weights,
-            offset: at(triangle, weights) - point,
-            along,
-        });
+        found = found.nearer(nearest_along(triangle, start.lerp(end, along), along));
     }
     found
 }
@@ -179,12 +170,9 @@ pub(crate) fn nearest_of_segments([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> (f32,
     let (aa, ee, f) = (ab.length_squared(), cd.length_squared(), cd.dot(ca));
     let (along, across) = (ab.dot(ca), ab.dot(cd));
     let parallel = aa * ee - across * across;
-    let clamp = |value: f32| {
-        if value.is_finite() {
-            value.clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
+    let clamp = |value: f32| match value.is_finite() {
+        true => value.clamp(0.0, 1.0),
+        false => 0.0,
     };
     let mut s = if parallel > 0.0 {
         clamp((across * f - along * ee) / parallel)

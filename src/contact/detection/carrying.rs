@@ -14,14 +14,14 @@ impl Detection {
     /// The particles that carry a body at the end of the tick, if this collider is dynamic and was near.
     pub(crate) fn carriers(&self, id: usize) -> &[Carrier] {
         let body = self.bodies.iter().find(|body| body.id == id);
-        body.map_or(&[], |body| body.carriers.as_slice())
+        body.map_or(&[], |body| &body.carriers.all)
     }
 
     /// Largest ratio of a carried body's mass to that of the chains that hold it, times the fraction of its weight
     /// that they hold. `fall` is the velocity that gravity adds in a tick (m/s). 0 if nothing is carried.
     pub(crate) fn load_ratio(&self, fall: f32) -> f32 {
         let ratio = |body: &Body| {
-            let held = body.change().velocity.length();
+            let held = body.change.velocity.length();
             body.carriers.load_ratio(held, fall)
         };
         self.bodies.iter().map(ratio).fold(0.0, f32::max)
@@ -63,10 +63,9 @@ impl Detection {
         }
         let mut has_carried = false;
         for body in &mut self.bodies {
-            let Some(moving) = moving_of(&self.colliders, body.id) else {
+            let Some(mut moving) = moving_of(&self.colliders, body.id).cloned() else {
                 continue;
             };
-            let mut moving = moving.clone();
             let Some((given, gone)) = body.detach_load(particles, &mut moving, substep) else {
                 continue;
             };

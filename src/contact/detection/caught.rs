@@ -1,7 +1,6 @@
 //! Cloth that is caught between two colliders.
 
 use super::Detection;
-use crate::cloth::MapInline;
 use crate::{cloth::ClothParticles, contact::candidates::Touch};
 
 /// Two colliders push against each other where the cosine of the angle between their normals is less: in a gap that opens by less
@@ -23,15 +22,9 @@ impl Detection {
                     let other = others.binary_search_by_key(&particle, |other| other.particle);
                     let is_pushed =
                         other.is_ok_and(|at| self.candidates.depth_of(&others[at]) > 0.0);
-                    let normals = || {
-                        let place = particles.position_at(particle as usize);
-                        [first, second]
-                            .map_inline(|touch| touch.collider.nearest(1.0, place).normal)
-                    };
-                    is_pushed && {
-                        let [first, second] = normals();
-                        first.dot(second) < AGAINST
-                    }
+                    let place = particles.position_at(particle as usize);
+                    let normal = |touch: &Touch| touch.collider.nearest(1.0, place).normal;
+                    is_pushed && normal(first).dot(normal(second)) < AGAINST
                 };
                 if pushed_by_first.map(|point| point.particle).any(is_caught) {
                     return Some([first.id, second.id]);

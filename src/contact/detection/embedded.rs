@@ -1,10 +1,12 @@
 //! Cloth that begins a tick deep inside a collider, which appeared or was teleported there.
 
+use std::ops::Range;
+
 use bevy::math::Vec3;
 
 use super::pieces::Pieces;
 use crate::{
-    cloth::{ClothParticles, LANES, MapInline, Slot, Surface},
+    cloth::{ClothParticles, LANES, Slot, Surface},
     contact::{
         candidates::{Candidate, ContactBlock, ContactSettings},
         colliders::{ColliderShape, ColliderSubstep, MovingCollider},
@@ -76,11 +78,8 @@ impl Embedding {
         (surface, particles, particle_radius): (&Surface, &ClothParticles, f32),
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) {
-        let begins_at = if was_embedded {
-            0.0
-        } else {
-            particle_radius + DEEP * surface.spacing().shortest
-        };
+        let deep = particle_radius + DEEP * surface.spacing().shortest;
+        let begins_at = if was_embedded { 0.0 } else { deep };
         // Only a half-space has one way out for all.
         if collider.shape == ColliderShape::HalfSpace
             || (self.pieces).collect(collider, found, particles, particle_radius) <= begins_at
@@ -108,26 +107,22 @@ impl Embedding {
         self.deepest
     }
 
-    /// The particles that do so for one collider.
-    fn of(&self, id: usize) -> &[Embedded] {
-        let [first, end] = self.range(id);
-        &self.all[first..end]
-    }
-
-    fn range(&self, id: usize) -> [usize; 2] {
+    /// The range of those that do so for one collider.
+    fn range(&self, id: usize) -> Range<usize> {
         // Callers count upwards.
-        [id, id.saturating_add(1)].map_inline(|id| self.all.partition_point(|one| one.id < id))
+        let before = |id: usize| self.all.partition_point(|one| one.id < id);
+        before(id)..before(id.saturating_add(1))
     }
 
     /// Blocks of the particles that leave a collider by another way than the nearest.
     pub fn blocks(&self, id: usize) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.of(id).iter().map(|one| one.slot.block)
+        self.all[self.range(id)].iter().map(|one| one.slot.block)
     }
 
     /// Notes where the candidates are among the contact blocks.
     pub fn note_places(&mut self, id: usize, candidates: &[Candidate]) {
-        let [first, end] = self.range(id);
-        for one in &mut self.all[first..end] {
+        let own = self.range(id);
+        for one in &mut self.all[own] {
             let key = one.particle;
             let at = candidates.binary_search_by_key(&key, |candidate| candidate.particle);
             one.place = at.map_or(NOWHERE, |at| candidates[at].place);
@@ -136,8 +131,8 @@ impl Embedding {
 
     /// Holds them in place while the collider pushes others, until [`push`](Self::push).
     pub fn hide(&mut self, id: usize, particles: &mut ClothParticles) {
-        let [first, end] = self.range(id);
-        for one in &mut self.all[first..end] {
+        let own = self.range(id);
+        for one in &mut self.all[own] {
             let block = &mut particles.blocks_mut()[one.slot.block];
             one.inverse_mass = block.inverse_mass(one.slot.lane);
             block.set_inverse_mass(one.slot.lane, 0.0);
@@ -153,13 +148,9 @@ impl Embedding {
         settings: &ContactSettings,
     ) -> ContactResult {
         let mut found = ContactResult::default();
-        let own = self.of(id);
-        if own.is_empty() {
-            return found;
-        }
         let seconds = particles.substep();
         let (fastest, most) = (SPEED * seconds, ACCELERATION * seconds * seconds);
-        for one in own {
+        for one in &self.all[self.range(id)] {
             let block = &mut particles.blocks_mut()[one.slot.block];
             let lane = one.slot.lane;
             block.set_inverse_mass(lane, one.inverse_mass);

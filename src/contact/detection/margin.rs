@@ -6,21 +6,22 @@ use crate::cloth::ClothParticles;
 const MAX_MEASURED: u32 = 2;
 
 /// The margin of a search, and how much of it is used. Whatever moves particles reports it here: else contacts are missed.
+/// Others only read its fields.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Margin {
     /// Displacement of a particle after which the candidates are searched for again (m).
-    size: f32,
+    pub size: f32,
     /// Largest displacement of a particle since the search (m): the sum of the largest moves and pushes, or measured.
     moved: f32,
     /// The part of that in this sub-step: a sweep reaches this far back (m).
-    moved_now: f32,
+    pub moved_now: f32,
     /// Sum of all displacements in the tick so far (m): nothing farther away can have arrived.
-    odometer: f32,
+    pub odometer: f32,
     /// Largest deviation of a body from the motion that was searched for (m).
     deviation: f32,
     /// The particles at the time of the search, if there was one.
-    origin: ClothParticles,
-    has_origin: bool,
+    pub origin: ClothParticles,
+    pub has_origin: bool,
     /// Number of measurements in this sub-step.
     measured: u32,
 }
@@ -59,30 +60,9 @@ impl Margin {
         self.deviation = self.deviation.max(by);
     }
 
-    pub fn size(&self) -> f32 {
-        self.size
-    }
-
     /// The part of the margin that is not used (m).
     pub fn left(&self) -> f32 {
         self.size - self.moved - self.deviation
-    }
-
-    pub fn moved_now(&self) -> f32 {
-        self.moved_now
-    }
-
-    pub fn odometer(&self) -> f32 {
-        self.odometer
-    }
-
-    /// The particles at the time of the search.
-    pub fn origin(&self) -> &ClothParticles {
-        &self.origin
-    }
-
-    pub fn has_origin(&self) -> bool {
-        self.has_origin
     }
 
     /// From here on displacements are measured.

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::{
-    bodies::{Before, Body, BodyChange, Carriers, Supports},
+    bodies::{Body, BodyChange, Carriers, StandingResponse, Supports},
     candidates::{
         Candidates, ContactPoint, ContactSettings, NarrowPhase, PushedParticles, SavedCandidates,
         TestedFaces, Touch,
@@ -25,7 +25,7 @@ use super::{
     edges::ShapeCache,
 };
 use crate::{
-    cloth::{ClothParticles, Lanes, Surface},
+    cloth::{Block, ClothParticles, Lanes, Surface},
     hierarchy::{Probe, TopDownQuery},
     solver::SubStep,
 };
@@ -57,7 +57,8 @@ pub struct Detection {
     bodies: Vec<Body>,
     /// Memory of earlier ones.
     spare: Vec<Carriers>,
-    before: Before,
+    /// Blocks of particles before a body's push.
+    before: Vec<(usize, Block)>,
     supports: Supports,
     shapes: ShapeCache,
 }
@@ -104,7 +105,7 @@ impl Detection {
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
-        let margin = self.margin.size();
+        let margin = self.margin.size;
         Self::probe_within(margin, collider, settings, surface, longest_edge, cloth)
     }
 
@@ -117,9 +118,8 @@ impl Detection {
         longest_edge: f32,
         cloth: &BoundingSphere,
     ) -> (Probe, NarrowPhase) {
-        let narrow_phase = settings
-            .narrow_phase
-            .of(collider, surface, settings.particle_radius);
+        let particle_radius = settings.particle_radius;
+        let narrow_phase = (settings.narrow_phase).of(collider, surface, particle_radius);
         let cover = match narrow_phase {
             NarrowPhase::Triangles | NarrowPhase::Auto => longest_edge,
             NarrowPhase::Particles => 0.0,
@@ -127,7 +127,7 @@ impl Detection {
         // Rounding of a position in each sub-step may add this to its displacement.
         let farthest = Vec3::from(cloth.center).length() + cloth.radius();
         let rounding = (farthest + collider.farthest_distance(cloth)) * 1.0e-5;
-        let probe = collider.probe(margin + cover + rounding, settings.particle_radius, cloth);
+        let probe = collider.probe(margin + cover + rounding, particle_radius, cloth);
         (probe, narrow_phase)
     }
 
@@ -167,8 +167,7 @@ impl Detection {
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) {
         let of = (&*self.surface, particles, self.particle_radius);
-        self.embedding
-            .find((id, collider), was_embedded, found, of, others);
+        (self.embedding).find((id, collider), was_embedded, found, of, others);
     }
 
     /// Whether cloth is embedded in a collider in this tick.
@@ -184,13 +183,13 @@ impl Detection {
     /// The change of a collider's motion by the cloth so far, if it is dynamic and was near.
     pub fn body_change(&self, id: usize) -> Option<BodyChange> {
         let body = self.bodies.iter().find(|body| body.id == id);
-        body.map(Body::change)
+        body.map(|body| body.change)
     }
 
     /// The part of that change by what the body stands on.
     pub(crate) fn body_held(&self, id: usize) -> BodyChange {
         let body = self.bodies.iter().find(|body| body.id == id);
-        body.map_or_else(BodyChange::default, Body::held)
+        body.map_or_else(BodyChange::default, |body| body.held)
     }
 
     /// Adds a collider after a number of sub-steps.
@@ -228,7 +227,7 @@ impl Detection {
         if self.bodies.iter().all(|body| body.id != id) {
             (self.bodies).extend(Body::of(id, collider, &mut self.spare));
         }
-        if !self.margin.has_origin() {
+        if !self.margin.has_origin {
             // Pushes that balance springs add up in a tick without a displacement, so it is measured from here.
             self.margin.remember(particles);
         }
@@ -281,9 +280,9 @@ impl Detection {
     ) -> bool {
         let has_carried = self.detach_load(particles, substep);
         self.follow_rolling(particles, substep.end());
-        let has_stood = self.stand(particles, settings, substep, Body::stand);
+        let has_stood = self.stand(particles, settings, substep, StandingResponse::KeepOff);
         let is_pushed = self.push_out(particles, settings, substep, others);
-        self.stand(particles, settings, substep, Body::apply_friction);
+        self.stand(particles, settings, substep, StandingResponse::Rub);
         if let Some(coming) = substep.next()
             && !self.bodies.is_empty()
         {

@@ -61,9 +61,7 @@ impl Pieces {
         self.inside.clear();
         let (pose, mut deepest) = (collider.from, 0.0_f32);
         let shape = &collider.shape;
-        let bounds = shape
-            .is_geometry()
-            .then(|| (pose.inverse(), shape.bounds()));
+        let bounds = (shape.is_geometry()).then(|| (pose.inverse(), shape.bounds()));
         for &particle in found {
             let place = particles.position_at(particle as usize);
             let is_beyond = bounds.is_some_and(|(inverse, [low, high])| {
@@ -109,13 +107,8 @@ impl Pieces {
             self.all[inside.piece as usize].is_torn |= is_blocked;
         }
         for piece in 0..self.all.len() {
-            let Piece {
-                count,
-                is_torn,
-                is_pinned,
-                ..
-            } = self.all[piece];
-            if count > 0 && is_torn && !is_pinned {
+            let own = self.all[piece];
+            if own.count > 0 && own.is_torn && !own.is_pinned {
                 self.all[piece].direction =
                     self.choose(piece, collider, particle_radius, others.clone());
             }
@@ -192,21 +185,16 @@ impl Pieces {
         particle_radius: f32,
         others: impl Iterator<Item = &'a MovingCollider> + Clone,
     ) -> Option<Vec3> {
-        let Piece {
-            normal, out, count, ..
-        } = self.all[piece];
+        let of = self.all[piece];
         let members = || {
             let members = self.inside.iter();
             let own = members.filter(move |inside| inside.piece as usize == piece);
-            own.step_by(count.div_ceil(SAMPLES))
+            own.step_by(of.count.div_ceil(SAMPLES))
         };
-        let normal = normal.normalize_or_zero();
-        let directions = [normal, -normal, out.normalize_or_zero()];
+        let normal = of.normal.normalize_or_zero();
+        let directions = [normal, -normal, of.out.normalize_or_zero()];
         let mut best = (f32::INFINITY, None);
-        for direction in directions
-            .into_iter()
-            .filter(|direction| *direction != Vec3::ZERO)
-        {
+        for direction in directions.into_iter().filter(|way| *way != Vec3::ZERO) {
             let (mut longest, mut sampled, mut blocked) = (0.0_f32, 0, 0);
             for member in members() {
                 sampled += 1;

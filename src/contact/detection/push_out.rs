@@ -6,9 +6,8 @@ use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
     contact::{
-        candidates::{Candidates, ContactSettings, NarrowPhase},
+        candidates::{ContactSettings, NarrowPhase},
         colliders::{MovingCollider, moving_of},
-        edges::push_shape,
         friction::{Impulse, PushOut},
         particles::{ContactResult, ParticlesNearEdges, lane_motion, push_particles},
         triangles::{CoreMotion, ResumePoint, TrianglePush},
@@ -82,8 +81,11 @@ impl Detection {
         if self.bodies.iter().any(|body| body.id == touch.id) {
             let contacts = &self.candidates.blocks[touch.of.blocks.clone()];
             let blocks = contacts.iter().map(|contact| contact.block as usize);
-            let embedded = self.embedding.blocks(touch.id);
-            self.before.save(blocks.chain(embedded), particles);
+            let blocks = blocks.chain(self.embedding.blocks(touch.id));
+            self.before.clear();
+            (self.before).extend(blocks.map(|block| (block, particles.blocks()[block])));
+            self.before.sort_unstable_by_key(|(block, _)| *block);
+            self.before.dedup_by_key(|(block, _)| *block);
         }
     }
 
@@ -112,20 +114,13 @@ impl Detection {
         substep: SubStep,
     ) -> (ContactResult, Option<ResumePoint>) {
         let (touch, margin) = (&self.touches[at], &self.margin);
-        let count = self.candidates.all.len();
-        let Candidates {
-            all,
-            blocks,
-            budgets,
-            ..
-        } = &mut self.candidates;
         let collider = &touch.collider;
+        let candidates = &self.candidates.all[touch.of.candidates.clone()];
+        let contacts = &mut self.candidates.blocks[touch.of.blocks.clone()];
         let first = touch.of.blocks.start;
-        let contacts = &mut blocks[touch.of.blocks.clone()];
-        let has_edges = collider.shape.has_edges();
-        let is_guarded = has_edges || collider.shape.is_geometry();
+        let is_guarded = collider.shape.has_edges() || collider.shape.is_geometry();
         // The guard measures the cloth.
-        let odometer = if is_guarded { 0.0 } else { margin.odometer() } + touch.travelled;
+        let odometer = if is_guarded { 0.0 } else { margin.odometer } + touch.travelled;
         let motion = collider.in_substep(substep);
         let seconds = particles.substep();
         let lanes_of = |shares: f32| {
@@ -134,52 +129,54 @@ impl Detection {
         };
         let lanes = lanes_of(1.0);
         self.embedding.hide(touch.id, particles);
-        let of = (&motion, settings);
         // Once, however often triangles are searched for again.
         let has_points = touch.of.has_points && from == ResumePoint::default();
         let points = match has_points && !is_guarded {
-            true => push_particles(particles, contacts, (&mut [], 0), of, &lanes),
+            true => push_particles(particles, contacts, (&mut [], 0), &motion, &lanes),
             false => ContactResult::default(),
         };
-        let has_hidden = self.supports.has_hidden();
         let (found, stopped) = match touch.narrow_phase {
             _ if is_guarded => {
-                self.shapes.reserve(count);
-                let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
-                let of = (touch.id, &collider.shape, self.surface.len());
-                let of = (by_triangles || collider.shape.is_geometry()).then_some(of);
-                let limit = collider.max_surface_travel(f32::INFINITY) + margin.size();
+                self.shapes.reserve(self.candidates.all.len());
+                let limit = collider.max_surface_travel(f32::INFINITY) + margin.size;
                 let travelled = [touch.travelled, limit];
-                (self.shapes.guard).measure(particles, margin.origin(), contacts, travelled);
-                let known = self.shapes.of(touch.of.candidates.clone(), of);
+                (self.shapes.guard).measure(particles, &margin.origin, contacts, travelled);
                 let mut pushing = ParticlesNearEdges {
-                    candidates: &all[touch.of.candidates.clone()],
+                    candidates,
                     contacts,
                     first,
                     motion,
-                    settings,
                     lanes: &lanes,
-                    has_hidden,
+                    has_hidden: self.supports.has_hidden(),
                 };
-                let edges = by_triangles.then_some(&*self.surface);
-                (push_shape(particles, &mut pushing, known, edges), None)
+                let of = (touch.id, touch.of.candidates.clone());
+                let by_triangles = touch.narrow_phase == NarrowPhase::Triangles;
+                let cloth = (&mut *particles, &*self.surface);
+                let found = self.shapes.push(cloth, &mut pushing, of, by_triangles);
+                (found, None)
             }
             NarrowPhase::Triangles => {
-                let mut pushed = TrianglePush::new(
-                    &all[touch.of.candidates.clone()],
-                    (contacts, first),
-                    &mut budgets[touch.of.budgets.clone()],
-                    (self.surface.fans(), self.surface.max_faces() as f32),
-                    [margin.left() - points.farthest_push, margin.moved_now()],
-                    touch.is_measured_in(substep),
-                );
-                let core = CoreMotion::new(motion, settings);
-                let stopped = pushed.push(particles, (&core, &lanes_of(TRIANGLES_A_PUSH)), from);
+                let mut pushed = TrianglePush {
+                    candidates,
+                    contacts,
+                    first,
+                    budgets: &mut self.candidates.budgets[touch.of.budgets.clone()],
+                    fans: self.surface.fans(),
+                    max_faces: self.surface.max_faces() as f32,
+                    clearance: margin.left() - points.farthest_push,
+                    moved: margin.moved_now,
+                    is_measured: touch.is_measured_in(substep),
+                    found: ContactResult::default(),
+                    passed: 0.0,
+                };
+                let core = CoreMotion::new(motion, lanes_of(TRIANGLES_A_PUSH));
+                let stopped = pushed.push(particles, &core, from);
                 (pushed.found, stopped)
             }
             NarrowPhase::Auto | NarrowPhase::Particles => (ContactResult::default(), None),
         };
         let of = (touch.id, &motion);
+        let blocks = &mut self.candidates.blocks;
         let embedded = self.embedding.push(particles, blocks, of, settings);
         (found.and(&points).and(&embedded), stopped)
     }
@@ -200,9 +197,7 @@ impl Detection {
         {
             let mut moving = touch.collider.clone();
             // A wave that hits the side of a cup does not carry it.
-            let up = self
-                .supports
-                .up_of(touch.id, &self.colliders, substep.end());
+            let up = (self.supports).up_of(touch.id, &self.colliders, substep.end());
             let may_carry = |out: Vec3| up.is_none_or(|up| out.dot(up) < -SIDEWAYS);
             let [kept, gone] = body.share(&self.before, particles, &mut moving, substep, may_carry);
             given.scale(f64::from(kept));

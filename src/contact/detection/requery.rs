@@ -5,7 +5,10 @@ use bevy::math::Vec3;
 use super::{Detection, send_on};
 use crate::{
     cloth::ClothParticles,
-    contact::candidates::{ContactSettings, Ranges},
+    contact::{
+        candidates::{ContactSettings, Ranges},
+        colliders::moving_of,
+    },
 };
 
 impl Detection {
@@ -42,7 +45,7 @@ impl Detection {
         self.requeries += 1;
         self.margin.widen(particles);
         for body in &mut self.bodies {
-            if let Some((_, moving)) = self.colliders.iter().find(|(id, _)| *id == body.id) {
+            if let Some(moving) = moving_of(&self.colliders, body.id) {
                 body.set_searched(moving);
             }
         }
@@ -60,17 +63,13 @@ impl Detection {
             let (probe, narrow_phase) =
                 self.probe(collider, settings, &self.surface, longest_edge, &cloth);
             found.clear();
-            if probe
-                .core
-                .may_reach(cloth.center.into(), cloth.radius() + probe.reach() as f32)
-            {
+            let radius = cloth.radius() + probe.reach() as f32;
+            if probe.core.may_reach(cloth.center.into(), radius) {
                 found.scan(particles, &probe);
             }
             // Tested particles stay candidates, so that no contact is forgotten.
             let found = found.candidates().iter().copied();
-            let mut all: Vec<u32> = self.saved.particles(*id).chain(found).collect();
-            all.sort_unstable();
-            all.dedup();
+            let all: Vec<u32> = self.saved.particles(*id).chain(found).collect();
             self.list(*id, collider, narrow_phase, passed, &all, particles);
         }
         self.colliders = colliders;

@@ -4,21 +4,12 @@ use super::{Detection, send_on};
 use crate::{
     cloth::{ClothParticles, MapInline},
     contact::{
-        bodies::{Body, ContactStep, Near, Stand, StandingResult, Supports},
+        bodies::{ContactStep, Near, Stand, StandingResponse, Supports},
         candidates::{Candidates, ContactSettings, Touch},
-        colliders::{MovingCollider, moving_of},
+        colliders::moving_of,
     },
     solver::SubStep,
 };
-
-/// The response of a body that stands: [`Body::stand`] or [`Body::apply_friction`].
-pub(super) type Act = fn(
-    &mut Body,
-    &mut Supports,
-    &mut ClothParticles,
-    &mut MovingCollider,
-    &ContactStep,
-) -> Option<StandingResult>;
 
 impl Detection {
     /// Finds where bodies stand at a fraction of the tick.
@@ -28,7 +19,7 @@ impl Detection {
             let Some(touch) = self.touches.iter().find(|touch| touch.id == body.id) else {
                 continue;
             };
-            if self.embedding.blocks(body.id).len() > 0 {
+            if self.is_embedded(body.id) {
                 continue;
             }
             let near = Near {
@@ -58,13 +49,13 @@ impl Detection {
         }
     }
 
-    /// Has each body that stands `act` on what it stands on and on the cloth between. Returns whether anything moved.
+    /// The response of each body that stands, of what it stands on, and of the cloth between. Returns whether anything moved.
     pub(super) fn stand(
         &mut self,
         particles: &mut ClothParticles,
         settings: &ContactSettings,
         substep: SubStep,
-        act: Act,
+        response: StandingResponse,
     ) -> bool {
         if self.supports.stands.is_empty() {
             return false;
@@ -80,7 +71,8 @@ impl Detection {
                 grips: &self.candidates.grips,
                 substep,
             };
-            let Some(stood) = act(body, &mut self.supports, particles, &mut moving, &step) else {
+            let supports = &mut self.supports;
+            let Some(stood) = body.stand(supports, particles, &mut moving, &step, response) else {
                 continue;
             };
             has_stood = true;
@@ -113,10 +105,8 @@ impl Detection {
 /// A body touches the particles that it presses, however little.
 fn note_pressed(touch: &Touch, candidates: &mut Candidates, supports: &Supports) {
     let near = &candidates.all[touch.of.candidates.clone()];
-    let own = supports
-        .stands
-        .iter()
-        .filter(|stand| stand.body == touch.id);
+    let stands = supports.stands.iter();
+    let own = stands.filter(|stand| stand.body == touch.id);
     for particle in own.flat_map(|stand| &supports.between[stand.between.clone()]) {
         let known = near.binary_search_by_key(particle, |candidate| candidate.particle);
         if let Ok(at) = known {

@@ -42,21 +42,13 @@ pub(crate) struct EdgeClearance {
     deepest: f32,
     /// Upper limit of the result (m).
     slack: f32,
-    /// The smallest clearance of all edges so far (m).
-    left: f32,
     rounding: f32,
 }
 
 impl EdgeClearance {
     /// The clearance of a tested triangle, up to a `slack` (m).
     pub fn new(test: &EdgeTest, slack: f32) -> Self {
-        let EdgeTest {
-            plane,
-            middle,
-            longest,
-            reach,
-            ..
-        } = *test;
+        let (plane, middle, longest) = (test.plane, test.middle, test.longest);
         let [v, w] = plane.gradients;
         let steepness = Vec3::new((v + w).length(), v.length(), w.length());
         Self {
@@ -65,22 +57,11 @@ impl EdgeClearance {
             middle,
             // The middle is at two thirds of each median, which is shorter than the longest side.
             size: (2.0 / 3.0) * (1.0 + 3.0 * BEYOND) * longest,
-            reach,
+            reach: test.reach,
             deepest: DEEPEST * longest,
             slack,
-            left: slack,
             rounding: 1.0e-6 * (middle.length() + longest),
         }
-    }
-
-    /// Displacement of the corners before any edge can touch (m).
-    pub fn left(&self) -> f32 {
-        self.left
-    }
-
-    /// Takes an edge into account.
-    pub fn see(&mut self, edge: &SharpEdge) {
-        self.left = self.left.min(self.of(edge));
     }
 
     /// Displacement of the corners before an edge can touch (m), up to the slack.

@@ -115,18 +115,13 @@ impl<'a> EdgeTest<'a> {
         if !is_over(&above) && !is_over(&below) {
             return below;
         }
-        let is_below = match self.is_below {
-            Some(known) => known,
-            None => self.lies_below(),
-        };
+        let is_below = self.is_below.unwrap_or_else(|| self.lies_below());
         self.found[usize::from(is_below)]
     }
 
     fn lies_below(&self) -> bool {
-        let outside = (self.shape)
-            .nearest(Isometry3d::IDENTITY, self.middle)
-            .normal;
-        let facing = self.plane.normal.dot(outside);
+        let nearest = self.shape.nearest(Isometry3d::IDENTITY, self.middle);
+        let facing = self.plane.normal.dot(nearest.normal);
         let depth = |side: usize| {
             let over = self.found[side].filter(|contact| contact.is_below.is_some());
             over.map_or(f32::INFINITY, |contact| contact.depth)
@@ -277,9 +272,7 @@ impl Plane {
         let in_plane = edge.outward - self.normal * self.normal.dot(edge.outward);
         let outwards = in_plane.try_normalize()?;
         // Change of the weights per metre inwards.
-        let [v, w] = self
-            .gradients
-            .map_inline(|gradient| -gradient.dot(outwards));
+        let [v, w] = self.gradients.map_inline(|of| -of.dot(outwards));
         let change = Vec3::new(-v - w, v, w);
         let (mut enters, mut leaves) = (f32::NEG_INFINITY, f32::INFINITY);
         for corner in 0..3 {
@@ -365,26 +358,23 @@ impl NearEdge {
             offset: Vec3::ZERO,
             centre: Vec3::ZERO,
         };
-        shape.edges_near(
-            bounds_of(triangle, around),
-            smooth,
-            |_, edge: &SharpEdge| {
-                let near = nearest(triangle, edge.ends);
-                let apart = near.offset.length() - edge.radius;
-                let touch = reach * edge.part;
-                let distance = apart + (reach - touch);
-                if distance < found.distance {
-                    let [from, to] = edge.ends;
-                    let outwards = near.offset.normalize_or_zero() * edge.radius;
-                    found = Self {
-                        distance,
-                        is_close: apart < touch / 2.0,
-                        offset: near.offset - outwards,
-                        centre: from.lerp(to, near.along) + outwards,
-                    };
-                }
-            },
-        );
+        let within = bounds_of(triangle, around);
+        shape.edges_near(within, smooth, |_, edge| {
+            let near = nearest(triangle, edge.ends);
+            let apart = near.offset.length() - edge.radius;
+            let touch = reach * edge.part;
+            let distance = apart + (reach - touch);
+            if distance < found.distance {
+                let [from, to] = edge.ends;
+                let outwards = near.offset.normalize_or_zero() * edge.radius;
+                found = Self {
+                    distance,
+                    is_close: apart < touch / 2.0,
+                    offset: near.offset - outwards,
+                    centre: from.lerp(to, near.along) + outwards,
+                };
+            }
+        });
         found
     }
 }

@@ -11,7 +11,7 @@ use crate::{
 #[derive(Debug, Default, Clone)]
 pub(crate) struct FanView {
     /// Positions in the shape's frame (m), without repetition.
-    corners: Vec<Vec3>,
+    pub corners: Vec<Vec3>,
     /// The particle itself.
     pub own: Vec3,
     /// Distance of the farthest corner (m).
@@ -43,12 +43,6 @@ impl FanView {
         }
         self.own = own.unwrap_or(Vec3::NAN);
         (self.extent, self.speed) = (extent.sqrt(), speed.sqrt() + motion.swing);
-    }
-
-    /// The corners (m).
-    #[inline]
-    pub fn corners(&self) -> &[Vec3] {
-        &self.corners
     }
 
     /// A triangle of some of the corners (m).

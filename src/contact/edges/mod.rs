@@ -7,4 +7,4 @@ mod shape_cache;
 mod shape_memory;
 mod sharp_edges;
 
-pub(crate) use shape_cache::{ShapeCache, push_shape};
+pub(crate) use shape_cache::ShapeCache;

@@ -4,14 +4,13 @@ use std::ops::Range;
 
 use super::{
     fan_view::FanView,
-    shape_memory::{ShapeMemories, ShapeMemory},
+    shape_memory::ShapeMemories,
     sharp_edges::{EdgeMotion, push_off_edges},
 };
 use crate::{
     cloth::{ClothParticles, Surface},
     contact::{
         candidates::Guard,
-        colliders::ColliderShape,
         particles::{ContactResult, ParticlesNearEdges, push_particles},
     },
 };
@@ -56,59 +55,36 @@ impl ShapeCache {
         }
     }
 
-    /// The cache of some candidates of a collider, with the memory of its shape where that is needed. The collider has an
-    /// ID and a shape, and the cloth a number of particles.
-    pub fn of(
+    /// Pushes particles out of a shape with edges, or whose nearest point is expensive; `by_triangles` pushes the triangles
+    /// of their surface off the edges, too. The collider has an ID, and its candidates a range.
+    pub fn push(
         &mut self,
-        candidates: Range<usize>,
-        shape: Option<(usize, &ColliderShape, usize)>,
-    ) -> ColliderCache<'_> {
-        let memories = &mut self.memories;
-        ColliderCache {
-            first: candidates.start,
-            clear: &mut self.clear[candidates.clone()],
-            near_edges: &mut self.near_edges[candidates],
-            guard: &mut self.guard,
-            memory: shape.map(|(id, shape, count)| memories.of(id, shape, count)),
-            view: &mut self.view,
+        (particles, surface): (&mut ClothParticles, &Surface),
+        pushing: &mut ParticlesNearEdges,
+        (id, candidates): (usize, Range<usize>),
+        by_triangles: bool,
+    ) -> ContactResult {
+        let shape = &pushing.motion.collider.shape;
+        let mut memory = (by_triangles || shape.is_geometry())
+            .then(|| self.memories.of(id, shape, surface.len()));
+        // Particles come last, so that none is inside at the end.
+        let mut by_edges = ContactResult::default();
+        if by_triangles && let Some(memory) = memory.as_deref_mut() {
+            let motion = EdgeMotion::new(pushing, surface.spacing().longest, memory.tick);
+            let first = candidates.start;
+            let clear = &mut self.clear[candidates.clone()];
+            let near_edges = &mut self.near_edges[candidates];
+            let of = (first, clear, near_edges);
+            let by = (&mut self.guard, &mut self.view, memory);
+            by_edges = push_off_edges(particles, pushing, surface, of, by, &motion);
         }
+        self.guard.tell(pushing.contacts);
+        let planes = match memory {
+            Some(memory) => memory.planes(particles.layout().blocks()),
+            None => (&mut [][..], 0),
+        };
+        let (of, lanes) = (&pushing.motion, pushing.lanes);
+        let found = push_particles(particles, pushing.contacts, planes, of, lanes);
+        found.and(&by_edges)
     }
-}
-
-/// The cache of a collider's candidates.
-pub(crate) struct ColliderCache<'a> {
-    /// Index of its first candidate among all.
-    pub first: usize,
-    pub clear: &'a mut [f32],
-    pub near_edges: &'a mut [u32],
-    pub guard: &'a mut Guard,
-    memory: Option<&'a mut ShapeMemory>,
-    pub view: &'a mut FanView,
-}
-
-/// Pushes particles out of a shape with edges. With a surface, pushes its triangles off the edges, too.
-pub(crate) fn push_shape(
-    particles: &mut ClothParticles,
-    pushing: &mut ParticlesNearEdges,
-    mut known: ColliderCache,
-    triangles: Option<&Surface>,
-) -> ContactResult {
-    // Particles come last, so that none is inside at the end.
-    let mut by_edges = ContactResult::default();
-    if let Some(surface) = triangles
-        && let Some(memory) = known.memory.as_deref_mut()
-    {
-        let motion = EdgeMotion::new(pushing, surface.spacing().longest, memory.tick);
-        let of = (known.first, known.clear, known.near_edges);
-        let by = (&mut *known.guard, known.view, memory);
-        by_edges = push_off_edges(particles, pushing, surface, of, by, &motion);
-    }
-    known.guard.tell(pushing.contacts);
-    let at = (&pushing.motion, pushing.settings);
-    let planes = match known.memory {
-        Some(memory) => memory.planes(particles.layout().blocks()),
-        None => (&mut [][..], 0),
-    };
-    let found = push_particles(particles, pushing.contacts, planes, at, pushing.lanes);
-    found.and(&by_edges)
 }

@@ -155,13 +155,7 @@ impl KnownFace {
         near: Nearness,
         moved: f32,
     ) -> Option<EdgeContact> {
-        let Nearness {
-            reach,
-            slack,
-            tick,
-            substep,
-            ..
-        } = near;
+        let Nearness { reach, slack, .. } = near;
         self.clearance = 0.0;
         let mut test = EdgeTest::new(shape, corners, reach)?;
         let strayed = farthest(corners, self.listed);
@@ -182,19 +176,20 @@ impl KnownFace {
             let left = slack * (1.0 - 1.0e-3) - strayed;
             self.clearance = self.test_listed(&mut test, slack).min(left);
         } else {
-            let mut clearance = EdgeClearance::new(&test, slack);
+            let clearance = EdgeClearance::new(&test, slack);
+            let mut left = slack;
             let around = bounds_of(corners, reach + slack);
             shape.edges_near(around, near.smooth, |_, edge| {
-                clearance.see(edge);
+                left = left.min(clearance.of(edge));
                 test.see(edge);
             });
-            self.clearance = clearance.left();
+            self.clearance = left;
         }
         let contact = test.contact()?;
         self.side = contact.is_below.map(|is_below| Side {
             is_below,
-            tick,
-            substep,
+            tick: near.tick,
+            substep: near.substep,
         });
         Some(contact)
     }
@@ -383,13 +378,11 @@ impl ShapeMemories {
     pub fn of(&mut self, id: usize, shape: &ColliderShape, particles: usize) -> &mut ShapeMemory {
         let is_of =
             |memory: &ShapeMemory| memory.shape == *shape && memory.places.len() == particles;
-        let mut all = self.0.iter();
-        let same = all.position(|memory| memory.id == id && is_of(memory));
-        let mut all = self.0.iter();
-        let known = same.or_else(|| all.position(|memory| memory.age > 0 && is_of(memory)));
+        let first = |is_it: &dyn Fn(&ShapeMemory) -> bool| self.0.iter().position(is_it);
+        let same = first(&|memory| memory.id == id && is_of(memory));
+        let known = same.or_else(|| first(&|memory| memory.age > 0 && is_of(memory)));
         // One that is scaled in each tick has another shape in each.
-        let mut all = self.0.iter();
-        let scaled = || all.position(|memory| memory.id == id && memory.places.len() == particles);
+        let scaled = || first(&|memory| memory.id == id && memory.places.len() == particles);
         let at = known.or_else(scaled).unwrap_or(self.0.len());
         match self.0.get_mut(at) {
             None => self.0.push(ShapeMemory::new(id, shape, particles)),

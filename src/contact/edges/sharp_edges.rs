@@ -13,10 +13,10 @@ use super::{
 use crate::{
     cloth::{ClothParticles, Fan, MapInline, Slot, Surface},
     contact::{
-        candidates::{Candidate, ContactSettings, Guard},
+        candidates::{Candidate, Guard},
         colliders::{ColliderSubstep, at},
-        friction::{Contact, Impulse, PushOut, first_touch},
-        particles::{ContactResult, ParticlesNearEdges},
+        friction::{Contact, Impulse, first_touch},
+        particles::{ContactResult, LaneMotion, ParticlesNearEdges},
         triangles::Corners,
     },
 };
@@ -30,8 +30,6 @@ const SKIN: f32 = 0.02;
 const SLACK: f32 = 0.25;
 /// Largest side of a triangle, in spacings: a diagonal of a grid, stretched by 6 %.
 const SIDE: f32 = 1.5;
-/// Largest push of a corner, relative to that of a triangle's point.
-const MAX_SHARE: f32 = 2.0;
 
 /// No candidate.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -39,48 +37,39 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// A shape's motion in a sub-step, for tests of triangles against its edges.
 pub(crate) struct EdgeMotion<'a> {
     of: ColliderSubstep<'a>,
-    settings: &'a ContactSettings,
-    /// Distance at which an edge touches (m).
-    reach: f32,
+    lanes: &'a LaneMotion,
     /// A triangle that moves farther in the sub-step may have passed an edge (m).
     fast: f32,
     near: Nearness,
     /// To its frame at the end.
     to_local: Affine3A,
-    push_out: PushOut,
 }
 
 impl<'a> EdgeMotion<'a> {
     /// On a cloth with a spacing (m), in a tick.
     pub fn new(pushing: &ParticlesNearEdges<'a>, spacing: f32, tick: u32) -> Self {
-        let settings = pushing.settings;
-        let skin = SKIN * spacing;
-        let reach = settings.particle_radius.max(skin);
+        let particle_radius = pushing.lanes.particle_radius;
+        let reach = particle_radius.max(SKIN * spacing);
         Self {
             of: pushing.motion,
-            settings,
-            reach,
+            lanes: pushing.lanes,
             fast: reach / 2.0,
             near: Nearness {
                 reach,
                 slack: reach.max(SLACK * spacing),
-                smooth: (SIDE * spacing).powi(2) / (6.0 * settings.particle_radius),
+                smooth: (SIDE * spacing).powi(2) / (6.0 * particle_radius),
                 tick,
                 substep: pushing.motion.substep.index,
             },
             to_local: pushing.motion.pose.inverse().into(),
-            push_out: pushing.lanes.push_out,
         }
     }
 
     /// Displacement relative to the shape for the swept test (m); 0 without one.
     #[inline]
     fn swept(&self, speed: f32) -> f32 {
-        if self.settings.is_swept && speed > self.fast && speed.is_finite() {
-            speed
-        } else {
-            0.0
-        }
+        let is_fast = self.lanes.is_swept && speed > self.fast && speed.is_finite();
+        if is_fast { speed } else { 0.0 }
     }
 
     /// The nearest edge at the first contact of a fast triangle.
@@ -89,22 +78,22 @@ impl<'a> EdgeMotion<'a> {
         if speed == 0.0 {
             return None;
         }
-        let around = speed + self.reach;
+        let Nearness { reach, smooth, .. } = self.near;
+        let around = speed + reach;
         let closest = |part: f32| {
             let pose = self.of.pose_at(part);
             let triangle = [0, 1, 2].map_inline(|corner| {
                 let gone = corners.displacements[corner] * (1.0 - part);
                 pose.inverse() * (corners.positions[corner] - gone)
             });
-            let limits = [self.reach, self.near.smooth];
-            NearEdge::of(&self.of.collider.shape, triangle, around, limits)
+            NearEdge::of(&self.of.collider.shape, triangle, around, [reach, smooth])
         };
         // For an edge that cut the triangle already, the original side is unknown.
         if closest(0.0).is_close {
             return None;
         }
-        let tolerance = 1.0e-2 * self.reach;
-        let part = first_touch(speed, self.reach, tolerance, |part| closest(part).distance)?;
+        let tolerance = 1.0e-2 * reach;
+        let part = first_touch(speed, reach, tolerance, |part| closest(part).distance)?;
         let (edge, pose) = (closest(part), self.of.pose_at(part));
         let normal = edge.offset.try_normalize()?;
         Some((self.of).carry(part, pose * edge.centre, pose.rotation * normal))
@@ -193,14 +182,10 @@ impl OffEdges<'_, '_> {
         if self.pushing.has_hidden && fan.corners.iter().all(is_pinned) {
             return 0.0;
         }
-        self.view.look(
-            particles.blocks(),
-            fan.corners,
-            &motion.to_local,
-            &motion.of,
-        );
+        let to_local = &motion.to_local;
+        (self.view).look(particles.blocks(), fan.corners, to_local, &motion.of);
         let shape = &motion.of.collider.shape;
-        let gap = shape.gap(self.view.corners()) - FLAT * near.reach;
+        let gap = shape.gap(&self.view.corners) - FLAT * near.reach;
         let clearance = gap.max(memory.clearance(candidate.particle, self.view, near));
         if clearance > motion.swept(self.view.speed) {
             return clearance;
@@ -223,18 +208,14 @@ impl OffEdges<'_, '_> {
             } else {
                 None
             };
-            let contact = match hit {
-                Some(_) => None,
-                None => known.deepest(shape, triangle, near, moved),
-            };
             let given = &mut self.found.given;
             let (index, slot) = self.pushing.place(&candidate);
             // That of the particle that owns the triangle.
-            let friction = motion.settings.friction * self.pushing.contacts[index].grip[slot.lane];
+            let friction = motion.lanes.friction * self.pushing.contacts[index].grip[slot.lane];
             let (pushed, depth) = if let Some(hit) = hit {
                 let corners = Corners::of(particles, slots);
                 push_in_front(particles, &corners, hit, (motion, friction), given)
-            } else if let Some(contact) = contact {
+            } else if let Some(contact) = known.deepest(shape, triangle, near, moved) {
                 let corners = Corners::of(particles, slots);
                 push_point(particles, &corners, &contact, (motion, friction), given)
             } else {
@@ -245,9 +226,7 @@ impl OffEdges<'_, '_> {
             for slot in slots {
                 self.guard.note(slot, pushed);
             }
-            let blocks = particles.blocks();
-            self.view
-                .look(blocks, fan.corners, &motion.to_local, &motion.of);
+            (self.view).look(particles.blocks(), fan.corners, to_local, &motion.of);
             self.pushing.note_depth(index, slot.lane, depth);
             self.found.deepest = self.found.deepest.max(depth);
             self.farthest = self.farthest.max(pushed);
@@ -264,37 +243,20 @@ fn push_point(
     (motion, friction): (&EdgeMotion, f32),
     given: &mut Impulse,
 ) -> (f32, f32) {
-    let EdgeContact {
-        weights,
-        normal,
-        depth,
-        ..
-    } = *contact;
-    let normal = motion.of.pose.rotation * normal;
-    let parts = [0, 1, 2].map_inline(|corner| weights[corner] * corners.inverse_masses[corner]);
-    let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-    // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
-    let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
-    if mobility == 0.0 {
+    let (weights, depth) = (contact.weights, contact.depth);
+    let normal = motion.of.pose.rotation * contact.normal;
+    let Some(shares) = corners.shares(weights) else {
         return (0.0, depth);
-    }
-    let point = at(corners.positions, weights) + normal * (depth - motion.reach);
-    let origin = motion.of.origin;
-    let surface = motion.of.surface_motion(point);
-    let push = Contact {
-        normal,
-        depth,
-        relative: at(corners.displacements, weights) - surface,
-    }
-    .push(friction, &motion.push_out);
+    };
+    let point = [corners.positions, corners.displacements].map_inline(|of| at(of, weights));
+    let contact = Contact::of(&motion.of, point, (normal, depth), motion.near.reach);
+    let push = contact.push(friction, &motion.lanes.push_out);
     let mut farthest = 0.0_f32;
-    for (corner, part) in parts.into_iter().enumerate() {
-        let share = part / mobility;
+    for (corner, share) in shares.into_iter().enumerate() {
         if share > 0.0 {
-            let push = [push.position * share, push.displacement * share];
-            farthest = farthest.max(push[0].length());
-            let pushed = corners.push(corner, particles, push);
-            given.add(pushed - origin, push[1], corners.inverse_masses[corner]);
+            let push = push.map_inline(|by| by * share);
+            let by = (&mut *given, motion.of.origin);
+            farthest = farthest.max(corners.push(corner, particles, push, by));
         }
     }
     (farthest, depth)
@@ -309,30 +271,19 @@ fn push_in_front(
     (motion, friction): (&EdgeMotion, f32),
     given: &mut Impulse,
 ) -> (f32, f32) {
-    let origin = motion.of.origin;
     let (mut farthest, mut deepest) = (0.0_f32, 0.0_f32);
     for corner in 0..3 {
         let position = corners.positions[corner];
-        let depth = motion.reach - normal.dot(position - centre);
+        let depth = motion.near.reach - normal.dot(position - centre);
         if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
             continue;
         }
-        let point = position + normal * (depth - motion.reach);
-        let surface = motion.of.surface_motion(point);
-        let push = Contact {
-            normal,
-            depth,
-            relative: corners.displacements[corner] - surface,
-        }
-        .push(friction, &motion.push_out);
+        let point = [position, corners.displacements[corner]];
+        let contact = Contact::of(&motion.of, point, (normal, depth), motion.near.reach);
+        let push = contact.push(friction, &motion.lanes.push_out);
         deepest = deepest.max(depth);
-        farthest = farthest.max(push.position.length());
-        let pushed = corners.push(corner, particles, [push.position, push.displacement]);
-        given.add(
-            pushed - origin,
-            push.displacement,
-            corners.inverse_masses[corner],
-        );
+        let by = (&mut *given, motion.of.origin);
+        farthest = farthest.max(corners.push(corner, particles, push, by));
     }
     (farthest, deepest)
 }

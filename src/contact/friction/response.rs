@@ -2,6 +2,8 @@
 
 use bevy::math::{DVec3, Vec3};
 
+use crate::contact::colliders::ColliderSubstep;
+
 /// A contact at the end of a sub-step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contact {
@@ -13,14 +15,24 @@ pub(crate) struct Contact {
     pub relative: Vec3,
 }
 
-/// Corrections of position and displacement (m).
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Push {
-    pub position: Vec3,
-    pub displacement: Vec3,
-}
-
 impl Contact {
+    /// The contact of a point of the cloth, by its position and its displacement in the sub-step (m). It touches at this
+    /// `reach` from the surface (m).
+    #[inline]
+    pub fn of(
+        motion: &ColliderSubstep,
+        [position, displacement]: [Vec3; 2],
+        (normal, depth): (Vec3, f32),
+        reach: f32,
+    ) -> Self {
+        let surface = motion.surface_motion(position + normal * (depth - reach));
+        Self {
+            normal,
+            depth,
+            relative: displacement - surface,
+        }
+    }
+
     /// The stopped displacement along the normal, and the total push out including it (m).
     ///
     /// Velocity loses only the approach of this sub-step, and only that counts for friction. An older overlap is not a
@@ -31,23 +43,17 @@ impl Contact {
     }
 
     /// Pushes out along the normal, and applies Coulomb friction: the tangential displacement shrinks by up to μ times
-    /// the normal one. An older overlap is released without gaining speed, at a limited rate.
-    pub fn push(&self, friction: f32, push_out: &PushOut) -> Push {
-        let Self {
-            normal, relative, ..
-        } = *self;
+    /// the normal one. An older overlap is released without gaining speed, at a limited rate. Returns the corrections of
+    /// position and displacement (m).
+    pub fn push(&self, friction: f32, push_out: &PushOut) -> [Vec3; 2] {
+        let (normal, relative) = (self.normal, self.relative);
         let tangential = relative - normal * normal.dot(relative);
         let [stopped, far] = self.stopped_and_out(push_out);
         let slip = tangential.length();
-        let grip = if slip > friction * stopped {
-            friction * stopped / slip
-        } else {
-            1.0
-        };
-        Push {
-            position: normal * far - tangential * grip,
-            displacement: normal * stopped - tangential * grip,
-        }
+        let most = friction * stopped;
+        let grip = if slip > most { most / slip } else { 1.0 };
+        let held = tangential * grip;
+        [normal * far - held, normal * stopped - held]
     }
 }
 
@@ -83,24 +89,11 @@ impl PushOut {
     /// `apart` is the relative displacement along the normal (m).
     #[inline(always)]
     pub fn of_lane(&self, depth: f32, apart: f32) -> (f32, f32) {
-        let stopped = if depth < -apart { depth } else { -apart };
-        let stopped = if stopped > 0.0 { stopped } else { 0.0 };
+        let stopped = larger(smaller(depth, -apart), 0.0);
         let overlap = depth - stopped;
-        let released = overlap * self.rate;
-        let released = larger(released, self.slowest);
-        let released = if released < self.fastest {
-            released
-        } else {
-            self.fastest
-        };
-        (
-            stopped,
-            if released < overlap {
-                released
-            } else {
-                overlap
-            },
-        )
+        let released = larger(overlap * self.rate, self.slowest);
+        let released = smaller(released, self.fastest);
+        (stopped, smaller(released, overlap))
     }
 
     /// The released part of an overlap (m).
@@ -114,6 +107,12 @@ impl PushOut {
 #[inline(always)]
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, likewise.
+#[inline(always)]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// The impulse on a collider as mass × displacement (kg m): momentum times the sub-step.

@@ -22,13 +22,9 @@ pub fn deepest_penetration(
             let beyond = seen_from(pose, position).abs() - half_size.as_dvec3();
             beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
         }
-        ColliderShape::Geometry(geometry) => {
+        ColliderShape::Geometry(_) | ColliderShape::Deforming(_) => {
             let local = seen_from(pose, position).as_vec3();
-            f64::from(geometry.nearest(local, f32::MAX).distance)
-        }
-        ColliderShape::Deforming(mesh) => {
-            let local = seen_from(pose, position).as_vec3();
-            f64::from(mesh.nearest(1.0, local).distance)
+            f64::from(shape.nearest_within(local, f32::MAX).distance)
         }
         _ => core.distance(position),
     };

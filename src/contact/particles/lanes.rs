@@ -15,7 +15,7 @@ use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
-        friction::{PushOut, larger},
+        friction::{PushOut, larger, smaller},
     },
 };
 
@@ -109,7 +109,7 @@ pub(crate) fn survey<const DEFORMS: bool>(
     let mut is_unusual = [0_u32; LANES];
     for l in 0..LANES {
         let is_free = (view[W + l] > 0.0) & (contact.points & (1 << l) != 0);
-        let depth = near.depth[l];
+        let (depth, bound) = (near.depth[l], near.bound[l]);
         let swing = if DEFORMS { near.swing[l] } else { 0.0 };
         let slow = motion.most - (motion.swing + swing);
         let slow = if slow > 0.0 { slow * slow } else { -1.0 };
@@ -119,11 +119,7 @@ pub(crate) fn survey<const DEFORMS: bool>(
         let is_deep = depth > motion.deepest;
         is_unusual[l] = if is_free & (is_fast | is_deep) { 1 } else { 0 };
         near.depth[l] = if is_free { depth } else { f32::NEG_INFINITY };
-        deepest[l] = if is_free {
-            near.bound[l]
-        } else {
-            f32::NEG_INFINITY
-        };
+        deepest[l] = if is_free { bound } else { f32::NEG_INFINITY };
         let away = view[X + l].abs() + view[Y + l].abs() + view[Z + l].abs();
         size[l] = if is_free { away } else { 0.0 };
     }
@@ -134,12 +130,7 @@ pub(crate) fn survey<const DEFORMS: bool>(
         leave_out(view, near, contact, motion, &is_unusual);
     }
     for (known, depth) in contact.depth.iter_mut().zip(near.depth) {
-        let depth = if depth < motion.thickness {
-            depth
-        } else {
-            motion.thickness
-        };
-        *known = if depth > *known { depth } else { *known };
+        *known = larger(smaller(depth, motion.thickness), *known);
     }
     // Smaller by rounding errors and by the tolerance of a touch.
     let moved = motion.odometer + contact.moved;

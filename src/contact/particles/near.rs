@@ -1,6 +1,9 @@
 //! Eight particles relative to a ball, a capsule, a box or a half-space.
 
-use crate::cloth::{LANES, Lanes, View, X, Y, Z};
+use crate::{
+    cloth::{LANES, Lanes, View, X, Y, Z},
+    contact::friction::{larger, smaller},
+};
 
 /// A ball, or a capsule.
 #[derive(Debug, Clone, Copy)]
@@ -54,16 +57,8 @@ pub(super) fn near_round(view: &View, shape: &Round) -> Near {
     for l in 0..LANES {
         let (x, y, z) = (view[X + l] - cx, view[Y + l] - cy, view[Z + l] - cz);
         let along = x * ax + y * ay + z * az;
-        let along = if along < shape.half_length {
-            along
-        } else {
-            shape.half_length
-        };
-        let along = if along > -shape.half_length {
-            along
-        } else {
-            -shape.half_length
-        };
+        let along = smaller(along, shape.half_length);
+        let along = larger(along, -shape.half_length);
         let (x, y, z) = (x - ax * along, y - ay * along, z - az * along);
         let length = (x * x + y * y + z * z).sqrt();
         near.offset[0][l] = x;
@@ -112,8 +107,7 @@ pub(super) fn near_cuboid(view: &View, shape: &Cuboid) -> Near {
         let b = x * v[0] + y * v[1] + z * v[2];
         let c = x * w[0] + y * w[1] + z * w[2];
         let (over_a, over_b, over_c) = (a.abs() - hu, b.abs() - hv, c.abs() - hw);
-        let largest = if over_a > over_b { over_a } else { over_b };
-        let largest = if largest > over_c { largest } else { over_c };
+        let largest = larger(larger(over_a, over_b), over_c);
         // Outside, the excess over each face counts; inside, only the nearest face.
         let least = if largest > 0.0 { 0.0 } else { largest };
         let is_in = largest <= 0.0;

@@ -4,7 +4,7 @@ use super::lanes::LaneMotion;
 use crate::{
     cloth::Slot,
     contact::{
-        candidates::{Candidate, ContactBlock, ContactSettings},
+        candidates::{Candidate, ContactBlock},
         colliders::ColliderSubstep,
     },
 };
@@ -16,7 +16,6 @@ pub(crate) struct ParticlesNearEdges<'a> {
     pub contacts: &'a mut [ContactBlock],
     pub first: usize,
     pub motion: ColliderSubstep<'a>,
-    pub settings: &'a ContactSettings,
     pub lanes: &'a LaneMotion,
     /// Whether some are pinned only now, so that they are not pushed.
     pub has_hidden: bool,

@@ -1,6 +1,6 @@
 //! The narrow phase by particles: each is a ball with its own radius.
 
-use bevy::math::{DVec3, Isometry3d, Mat3, Vec3};
+use bevy::math::{DVec3, Mat3, Vec3};
 
 use super::{
     lanes::{LaneMotion, Sums, push_cuboid, push_half_space, push_round},
@@ -66,12 +66,11 @@ pub(crate) fn push_particles(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
     (planes, tick): (&mut [Planes], u32),
-    (of, settings): (&ColliderSubstep, &ContactSettings),
+    of: &ColliderSubstep,
     motion: &LaneMotion,
 ) -> ContactResult {
     let mut found = ContactResult::default();
     let mut sums = Sums::default();
-    let pose = of.pose;
     let blocks = particles.blocks_mut();
     let shape = &of.collider.shape;
     if shape.is_geometry() {
@@ -79,11 +78,11 @@ pub(crate) fn push_particles(
         find_planes(blocks, contacts, planes, (shape, &frame, motion));
         push_planes(blocks, contacts, planes, (&frame, motion), &mut sums);
     } else {
-        push_lanes(blocks, contacts, (shape, pose), motion, &mut sums);
+        push_lanes(blocks, contacts, of, motion, &mut sums);
     }
     found.add(&sums);
     if sums.left > 0 {
-        push_left(particles, contacts, (of, settings), motion, &mut found);
+        push_left(particles, contacts, of, motion, &mut found);
     }
     found
 }
@@ -110,7 +109,11 @@ pub(crate) fn lane_motion(
         particle_radius,
         most: thickness / 2.0,
         deepest,
-        tolerance: tolerance(thickness),
+        // None for a half-space, which has no end.
+        tolerance: match thickness.is_finite() {
+            true => 1.0e-3 * thickness,
+            false => 0.0,
+        },
         is_swept: settings.is_swept,
         friction: settings.friction,
         push_out,
@@ -123,38 +126,34 @@ pub(crate) fn lane_motion(
 fn push_lanes(
     blocks: &mut [Block],
     contacts: &mut [ContactBlock],
-    (shape, pose): (&ColliderShape, Isometry3d),
+    of: &ColliderSubstep,
     motion: &LaneMotion,
     sums: &mut Sums,
 ) {
     let centre = motion.origin;
-    let up = pose.rotation * Vec3::Y;
-    match *shape {
+    let up = of.pose.rotation * Vec3::Y;
+    let round = |axis, half_length, radius| Round {
+        centre,
+        axis,
+        half_length,
+        reach: radius + motion.particle_radius,
+    };
+    match of.collider.shape {
         ColliderShape::Ball { radius } => {
-            let ball = Round {
-                centre,
-                axis: [0.0; 3],
-                half_length: 0.0,
-                reach: radius + motion.particle_radius,
-            };
+            let ball = round([0.0; 3], 0.0, radius);
             push_round(blocks, contacts, &ball, motion, sums);
         }
         ColliderShape::Capsule {
             radius,
             half_length,
         } => {
-            let capsule = Round {
-                centre,
-                axis: up.to_array(),
-                half_length,
-                reach: radius + motion.particle_radius,
-            };
+            let capsule = round(up.to_array(), half_length, radius);
             push_round(blocks, contacts, &capsule, motion, sums);
         }
         ColliderShape::Cuboid { half_size } => {
             let cuboid = Cuboid {
                 centre,
-                axes: Mat3::from_quat(pose.rotation).to_cols_array_2d(),
+                axes: Mat3::from_quat(of.pose.rotation).to_cols_array_2d(),
                 half_size: half_size.to_array(),
                 reach: motion.particle_radius,
             };
@@ -172,25 +171,16 @@ fn push_lanes(
     }
 }
 
-/// Distance that counts as a touch where something moves fast (m).
-fn tolerance(thickness: f32) -> f32 {
-    if thickness.is_finite() {
-        1.0e-3 * thickness
-    } else {
-        0.0
-    }
-}
-
 /// Pushes the particles of the remaining blocks one by one.
 fn push_left(
     particles: &mut ClothParticles,
     contacts: &mut [ContactBlock],
-    (of, settings): (&ColliderSubstep, &ContactSettings),
+    of: &ColliderSubstep,
     motion: &LaneMotion,
     found: &mut ContactResult,
 ) {
-    let particle_radius = settings.particle_radius;
     let (shape, thickness) = (&of.collider.shape, motion.thickness);
+    let particle_radius = motion.particle_radius;
     for contact in contacts.iter_mut().filter(|contact| contact.left != 0) {
         for lane in (0..LANES).filter(|lane| contact.left & (1 << lane) != 0) {
             let block = &particles.blocks()[contact.block as usize];
@@ -199,15 +189,11 @@ fn push_left(
                 continue;
             }
             let (position, displacement) = (block.position(lane), block.displacement(lane));
-            let Nearest {
-                distance,
-                mut normal,
-            } = of.nearest(position);
-            let mut depth = particle_radius - distance;
-            let hit = hit(of, settings, [position, displacement]);
-            if let Some((hit_normal, hit_depth)) = hit {
-                (normal, depth) = (hit_normal, hit_depth);
-            }
+            let nearest = of.nearest(position);
+            let point = [position, displacement];
+            let hit = hit(of, motion, point);
+            let (normal, depth) =
+                hit.unwrap_or((nearest.normal, particle_radius - nearest.distance));
             // Which others of a complex shape are tested depends on what is remembered.
             if depth > 0.0 || !shape.is_geometry() {
                 contact.depth[lane] = contact.depth[lane].max(depth.min(thickness));
@@ -215,14 +201,9 @@ fn push_left(
             if depth <= 0.0 {
                 continue;
             }
-            let surface = of.surface_motion(position + normal * (depth - particle_radius));
-            let push = Contact {
-                normal,
-                depth,
-                relative: displacement - surface,
-            }
-            .push(settings.friction * contact.grip[lane], &motion.push_out);
-            let mut pushed = position + push.position;
+            let [push, change] = Contact::of(of, point, (normal, depth), particle_radius)
+                .push(motion.friction * contact.grip[lane], &motion.push_out);
+            let mut pushed = position + push;
             if hit.is_some() && shape.is_geometry() {
                 // Another part of it may be in front of the one that was hit.
                 let Nearest { distance, normal } = of.nearest(pushed);
@@ -230,10 +211,8 @@ fn push_left(
             }
             let block = &mut particles.blocks_mut()[contact.block as usize];
             block.set_position(lane, pushed);
-            block.set_displacement(lane, displacement + push.displacement);
-            found
-                .given
-                .add(pushed - of.origin, push.displacement, inverse_mass);
+            block.set_displacement(lane, displacement + change);
+            (found.given).add(pushed - of.origin, change, inverse_mass);
             found.deepest = found.deepest.max(depth.min(thickness));
             found.farthest_push = found.farthest_push.max(pushed.distance(position));
             found.area += contact.area[lane];
@@ -245,29 +224,28 @@ fn push_left(
 /// The normal where a particle from outside hit the collider, and its displacement along it to stay in front of the
 /// surface there (m): for motion so large that the test at the end of the sub-step may come too late.
 fn hit(
-    motion: &ColliderSubstep,
-    settings: &ContactSettings,
+    of: &ColliderSubstep,
+    motion: &LaneMotion,
     [position, displacement]: [Vec3; 2],
 ) -> Option<(Vec3, f32)> {
-    let radius = settings.particle_radius;
-    let thickness = motion.collider.shape.thickness() + radius;
-    let speed = motion.speed([displacement]);
+    let (radius, most) = (motion.particle_radius, motion.most);
+    let speed = of.speed([displacement]);
     // A particle that moved less than half of the thickness is still on its original side.
-    if !settings.is_swept || speed <= thickness / 2.0 || !speed.is_finite() {
+    if !motion.is_swept || speed <= most || !speed.is_finite() {
         return None;
     }
     let start = position - displacement;
     let place = |part: f32| start + displacement * part;
-    let nearest = |part: f32| motion.collider.nearest(motion.passed(part), place(part));
+    let nearest = |part: f32| of.collider.nearest(of.passed(part), place(part));
     // For a particle this deep already, the original side is unknown.
-    if nearest(0.0).distance < radius - thickness / 2.0 {
+    if nearest(0.0).distance < radius - most {
         return None;
     }
     let distance = |part| nearest(part).distance;
-    let part = first_touch(speed, radius, tolerance(thickness), distance)?;
+    let part = first_touch(speed, radius, motion.tolerance, distance)?;
     let Nearest { distance, normal } = nearest(part);
     // The position that it would have, had it moved on with the surface: in front of every convex shape.
-    let (carried, normal) = motion.carry(part, place(part), normal);
+    let (carried, normal) = of.carry(part, place(part), normal);
     let depth = normal.dot(carried - position) + (radius - distance);
     (depth > 0.0).then_some((normal, depth))
 }

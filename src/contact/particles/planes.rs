@@ -92,9 +92,7 @@ impl Planes {
             self.surface[axis][lane] = surface[axis];
         }
     }
-}
 
-impl Planes {
     /// Clears the positions of those that are not reused.
     #[cfg(test)]
     pub fn forget(&mut self) {
@@ -195,13 +193,10 @@ pub(crate) fn find_planes(
         }
         let planes = &mut planes[contact.block as usize];
         if planes.tick != frame.tick {
-            (planes.same, planes.tick) = ([-1.0; LANES], frame.tick);
             if frame.deforms() {
-                *planes = Planes {
-                    tick: frame.tick,
-                    ..Planes::UNKNOWN
-                };
+                *planes = Planes::UNKNOWN;
             }
+            (planes.same, planes.tick) = ([-1.0; LANES], frame.tick);
         }
         let view = blocks[contact.block as usize].view();
         let is_stale = match frame.deforms() {
@@ -223,11 +218,8 @@ fn near_planes<const DEFORMS: bool>(view: &View, planes: &Planes, frame: &Frame)
     for l in 0..LANES {
         let moved = moved::<DEFORMS>(view, planes, frame, l);
         let [a, b, c] = moved.offset;
-        let (na, nb, nc) = (
-            planes.normal[0][l],
-            planes.normal[1][l],
-            planes.normal[2][l],
-        );
+        let normal = &planes.normal;
+        let (na, nb, nc) = (normal[0][l], normal[1][l], normal[2][l]);
         let is_same = moved.is_same;
         let depth = frame.reach - (planes.distance[l] + na * a + nb * b + nc * c);
         near.depth[l] = if is_same { depth } else { f32::NEG_INFINITY };

@@ -2,12 +2,13 @@
 
 use bevy::math::{Isometry3d, Vec3};
 
+use super::lanes::MAX_SHARE;
 use crate::{
     cloth::{Block, ClothParticles, MapInline, Slot, Surface},
     contact::{
-        candidates::ContactSettings,
         colliders::{ColliderSubstep, MovingCollider, NearestPoints, at, nearest},
-        friction::first_touch,
+        friction::{Impulse, first_touch},
+        particles::LaneMotion,
     },
     hierarchy::{Core, Probe},
 };
@@ -32,20 +33,34 @@ impl Corners {
         }
     }
 
-    /// Moves a corner, and adds a displacement to its motion (m). Returns its new position.
+    /// Moves a corner, and adds a displacement to its motion (m). Adds the impulse on the collider, which has its origin
+    /// there (m). Returns the distance.
     #[inline]
     pub fn push(
         &self,
         corner: usize,
         particles: &mut ClothParticles,
         [push, displacement]: [Vec3; 2],
-    ) -> Vec3 {
+        (given, origin): (&mut Impulse, Vec3),
+    ) -> f32 {
         let Slot { block, lane } = self.slots[corner];
         let block = &mut particles.blocks_mut()[block];
         let pushed = self.positions[corner] + push;
         block.set_position(lane, pushed);
         block.set_displacement(lane, self.displacements[corner] + displacement);
-        pushed
+        given.add(pushed - origin, displacement, self.inverse_masses[corner]);
+        push.length()
+    }
+
+    /// The push of each corner relative to that of the point with these weights: by its weight and its inverse mass.
+    /// `None` if none can move.
+    #[inline]
+    pub fn shares(&self, weights: [f32; 3]) -> Option<[f32; 3]> {
+        let parts = [0, 1, 2].map_inline(|corner| weights[corner] * self.inverse_masses[corner]);
+        let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
+        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
+        let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
+        (mobility != 0.0).then(|| parts.map_inline(|part| part / mobility))
     }
 
     /// Positions at a fraction of the sub-step.
@@ -62,6 +77,8 @@ pub(crate) struct Touching {
     pub normal: Vec3,
     /// The core's point (m).
     pub centre: Vec3,
+    /// Penetration along the normal (m), negative outside.
+    pub depth: f32,
     /// Whether the sweep found it, on a path longer than half of the reach.
     pub is_swept: bool,
 }
@@ -69,7 +86,7 @@ pub(crate) struct Touching {
 /// A ball's or a capsule's motion in a sub-step, for tests against triangles.
 pub(crate) struct CoreMotion<'a> {
     pub of: ColliderSubstep<'a>,
-    pub settings: &'a ContactSettings,
+    pub lanes: LaneMotion,
     /// Distance from the core at which it touches (m).
     pub reach: f32,
     /// The core at the end of the sub-step.
@@ -77,11 +94,11 @@ pub(crate) struct CoreMotion<'a> {
 }
 
 impl<'a> CoreMotion<'a> {
-    pub fn new(of: ColliderSubstep<'a>, settings: &'a ContactSettings) -> Self {
+    pub fn new(of: ColliderSubstep<'a>, lanes: LaneMotion) -> Self {
         Self {
             of,
-            settings,
-            reach: of.collider.shape.radius().unwrap_or(0.0) + settings.particle_radius,
+            lanes,
+            reach: of.collider.shape.radius().unwrap_or(0.0) + lanes.particle_radius,
             at_end: segment(of.collider, of.pose),
         }
     }
@@ -107,20 +124,17 @@ impl<'a> CoreMotion<'a> {
         let [start, end] = self.at_end;
         let along = end - start;
         let part = ((point - start).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-        let nearest = if part > 0.0 {
-            start + along * part
-        } else {
-            start
-        };
+        let beside = start + along * part;
+        // A core of zero length is its first end.
+        let nearest = if part > 0.0 { beside } else { start };
         // Larger by rounding errors and by the tolerance of a touch.
         let near = (1.0 + 4.0e-3) * self.reach + extent;
         let rounding = 1.0e-5 * (near + point.length());
         point.distance(nearest) - near - rounding
     }
 
-    /// The contact of a triangle at the end of the sub-step or at its first hit, and its penetration along the normal
-    /// (m), negative outside.
-    pub fn touch(&self, corners: &Corners) -> Option<(Touching, f32)> {
+    /// The contact of a triangle at the end of the sub-step or at its first hit.
+    pub fn touch(&self, corners: &Corners) -> Option<Touching> {
         let reach = self.reach;
         let segment = |part: f32| segment(self.of.collider, self.of.pose_at(part));
         let touching = |nearest: NearestPoints, [start, end]: [Vec3; 2], triangle: [Vec3; 3]| {
@@ -128,16 +142,13 @@ impl<'a> CoreMotion<'a> {
                 0.0 => (face_normal(triangle, start.midpoint(end)), 0.0),
                 distance => (nearest.offset / distance, distance),
             };
-            let centre = start.lerp(end, nearest.along);
-            (
-                Touching {
-                    weights: nearest.weights,
-                    normal,
-                    centre,
-                    is_swept: false,
-                },
-                distance,
-            )
+            Touching {
+                weights: nearest.weights,
+                normal,
+                centre: start.lerp(end, nearest.along),
+                depth: reach - distance,
+                is_swept: false,
+            }
         };
         let speed = self.of.speed(corners.displacements);
         let [a, b, c] = corners.positions;
@@ -155,26 +166,25 @@ impl<'a> CoreMotion<'a> {
         }
         // A triangle that moved less than half of the reach, and is not nearer, is still on its original side.
         let is_plain = speed <= reach / 2.0 && distance >= reach / 2.0;
-        if self.settings.is_swept && !is_plain && speed.is_finite() {
+        if self.lanes.is_swept && !is_plain && speed.is_finite() {
             let tolerance = 1.0e-3 * reach;
             let hit = first_touch(speed, reach, tolerance, |part| {
                 nearest(corners.when(part), segment(part)).offset.length()
             });
             if let Some(part) = hit {
                 let (triangle, core) = (corners.when(part), segment(part));
-                let (mut touch, _) = touching(nearest(triangle, core), core, triangle);
+                let mut touch = touching(nearest(triangle, core), core, triangle);
                 touch.is_swept = speed > reach / 2.0;
                 // The position that it would have, had it moved on with the surface.
                 (touch.centre, touch.normal) = self.of.carry(part, touch.centre, touch.normal);
                 let offset = at(corners.positions, touch.weights) - touch.centre;
-                let depth = reach - touch.normal.dot(offset);
-                if depth > 0.0 {
-                    return Some((touch, depth));
+                touch.depth = reach - touch.normal.dot(offset);
+                if touch.depth > 0.0 {
+                    return Some(touch);
                 }
             }
         }
-        let (touch, distance) = touching(nearest_at_end, self.at_end, corners.positions);
-        Some((touch, reach - distance))
+        Some(touching(nearest_at_end, self.at_end, corners.positions))
     }
 }
 
@@ -191,11 +201,8 @@ fn segment(collider: &MovingCollider, pose: Isometry3d) -> [Vec3; 2] {
 #[inline]
 fn face_normal([a, b, c]: [Vec3; 3], middle: Vec3) -> Vec3 {
     let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
-    if normal.dot(a - middle) < 0.0 {
-        -normal
-    } else {
-        normal
-    }
+    let is_inwards = normal.dot(a - middle) < 0.0;
+    if is_inwards { -normal } else { normal }
 }
 
 /// Whether a probe meets a triangle that any of the `found` particles owns, at the current positions. For a box or a
@@ -212,15 +219,10 @@ pub fn meets_triangles(
         Core::Cuboid { .. } | Core::HalfSpace { .. } => return !found.is_empty(),
     };
     let reach = probe.reach() as f32;
-    let layout = particles.layout();
-    let mut faces = found
-        .iter()
-        .flat_map(|&particle| surface.faces().of(particle));
+    let owners = found.iter();
+    let mut faces = owners.flat_map(|&owner| surface.faces().of(owner));
     faces.any(|face| {
-        let corners = Corners::of(
-            particles,
-            face.map_inline(|corner| layout.slot_of(corner as usize)),
-        );
-        nearest(corners.positions, segment).offset.length_squared() < reach * reach
+        let corners = face.map_inline(|corner| particles.position_at(corner as usize));
+        nearest(corners, segment).offset.length_squared() < reach * reach
     })
 }

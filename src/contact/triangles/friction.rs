@@ -6,7 +6,7 @@ use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, MapInline, View, W, X, Y, Z},
     contact::{
         candidates::ContactBlock,
-        friction::{FrictionBudget, larger},
+        friction::{FrictionBudget, larger, smaller},
         particles::{LaneMotion, Sums},
     },
 };
@@ -50,16 +50,8 @@ fn hold(
         let budget = held.budget[l] * kept + motion.friction * grips[l] * pushed;
         let (x, y, z) = (view[X + l] - ox, view[Y + l] - oy, view[Z + l] - oz);
         let along = x * ux + y * uy + z * uz;
-        let along = if along < core.half_length {
-            along
-        } else {
-            core.half_length
-        };
-        let along = if along > -core.half_length {
-            along
-        } else {
-            -core.half_length
-        };
+        let along = smaller(along, core.half_length);
+        let along = larger(along, -core.half_length);
         // Displacement of the surface at the contact.
         let ax = ux * along + nx * core.radius;
         let ay = uy * along + ny * core.radius;
@@ -80,11 +72,8 @@ fn hold(
         view[DY + l] += fy;
         view[DZ + l] += fz;
         let budget = budget - slip * grip;
-        let budget = if is_held && budget > NONE_LEFT {
-            budget
-        } else {
-            0.0
-        };
+        let is_left = is_held && budget > NONE_LEFT;
+        let budget = if is_left { budget } else { 0.0 };
         left[l] = budget;
         held.normal[0][l] = nx;
         held.normal[1][l] = ny;

@@ -10,7 +10,7 @@ use crate::{
     cloth::{Block, LANES, Layout, MapInline, Slot, View},
     contact::{
         candidates::ContactBlock,
-        friction::FrictionBudget,
+        friction::{FrictionBudget, larger, smaller},
         particles::{LaneMotion, Sums},
     },
 };
@@ -107,23 +107,16 @@ fn push_eight(
         let is_left = is_cell[l] & (!is_wide | is_met | !is_far);
         left[l] = is_left;
         let depth = cells.reach - distance;
-        is_pushed[l] = is_cell[l] & !is_left & (depth > 0.0);
-        let depth = if is_cell[l] & !is_left {
-            depth
-        } else {
-            f32::NEG_INFINITY
-        };
-        contact.depth[l] = if depth > contact.depth[l] {
-            depth
-        } else {
-            contact.depth[l]
-        };
+        let is_tested = is_cell[l] & !is_left;
+        is_pushed[l] = is_tested & (depth > 0.0);
+        let depth = if is_tested { depth } else { f32::NEG_INFINITY };
+        contact.depth[l] = larger(depth, contact.depth[l]);
         clear[l] = if is_left { f32::NEG_INFINITY } else { -depth };
     }
     let (mut any, mut least) = (false, f32::INFINITY);
     for l in 0..LANES {
         any |= is_pushed[l];
-        least = if clear[l] < least { clear[l] } else { least };
+        least = smaller(clear[l], least);
     }
     if any {
         let pushes = pushes([a, b, c], &near, &is_pushed, motion, cells, sums);
@@ -159,12 +152,9 @@ fn cells_of(layout: Layout, block: u32) -> [bool; LANES] {
 #[inline(always)]
 fn corners_of(layout: Layout, contact: &ContactBlock, index: usize) -> [[Corner; 3]; 2] {
     let (block, strip) = (contact.block as usize, layout.strip as usize);
-    let is_last = (block + 1).is_multiple_of(strip);
-    let beside = if is_last {
-        block + 1 - strip
-    } else {
-        block + 1
-    };
+    let next = block + 1;
+    let is_last = next.is_multiple_of(strip);
+    let beside = if is_last { next - strip } else { next };
     let [right, below, below_right] = contact.around.map_inline(|contact| contact as usize);
     let corner = |block, contact, is_shifted| Corner {
         block,

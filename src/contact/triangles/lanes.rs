@@ -8,7 +8,7 @@ use crate::{
     cloth::{DX, DY, DZ, LANES, Lanes, Layout, MapInline, View, W, X, Y, Z},
     contact::{
         colliders::cap,
-        friction::larger,
+        friction::{larger, smaller},
         particles::{LaneMotion, Sums},
     },
 };
@@ -135,8 +135,7 @@ pub(crate) fn nearest_of_each(a: &View, b: &View, c: &View, [px, py, pz]: [f32; 
         near.sum[l] = sum;
         let to_b = near_a - 2.0 * d1 + bb;
         let to_c = near_a - 2.0 * d2 + cc;
-        let corner = if near_a < to_b { near_a } else { to_b };
-        near.corner[l] = if corner < to_c { corner } else { to_c };
+        near.corner[l] = smaller(smaller(near_a, to_b), to_c);
         near.edges[0][l] = bb + cc - 2.0 * bc;
         near.edges[1][l] = cc;
         near.edges[2][l] = bb;
@@ -152,11 +151,7 @@ pub(crate) fn speeds(corners: [&View; 3], [sx, sy, sz]: [f32; 3]) -> Lanes {
         for l in 0..LANES {
             let (x, y, z) = (view[DX + l] - sx, view[DY + l] - sy, view[DZ + l] - sz);
             let square = x * x + y * y + z * z;
-            fastest[l] = if square > fastest[l] {
-                square
-            } else {
-                fastest[l]
-            };
+            fastest[l] = larger(square, fastest[l]);
         }
     }
     fastest.map_inline(f32::sqrt)
@@ -202,11 +197,8 @@ pub(crate) fn pushes(
         let mobility = larger(mobility, least);
         let is_pushed = is_pushed[l] & (mobility > 0.0);
         let distance = near.distance[l];
-        let (nx, ny, nz) = (
-            near.offset[0][l] / distance,
-            near.offset[1][l] / distance,
-            near.offset[2][l] / distance,
-        );
+        let [x, y, z] = &near.offset;
+        let (nx, ny, nz) = (x[l] / distance, y[l] / distance, z[l] / distance);
         let (ax, ay, az) = (nx * radius, ny * radius, nz * radius);
         let [mx, my, mz] = motion.of_surface([ax, ay, az]);
         let rx = u * a[DX + l] + v * b[DX + l] + w * c[DX + l] - mx;
@@ -254,11 +246,8 @@ pub(crate) fn move_corner(
     for l in 0..LANES {
         let share = share[l];
         let (far, stopped) = (pushes.far[l] * share, pushes.stopped[l] * share);
-        let (nx, ny, nz) = (
-            pushes.normal[0][l],
-            pushes.normal[1][l],
-            pushes.normal[2][l],
-        );
+        let normal = &pushes.normal;
+        let (nx, ny, nz) = (normal[0][l], normal[1][l], normal[2][l]);
         let (mx, my, mz) = (nx * stopped, ny * stopped, nz * stopped);
         view[X + l] += nx * far;
         view[Y + l] += ny * far;
@@ -270,16 +259,11 @@ pub(crate) fn move_corner(
         momentum[1][l] = my;
         momentum[2][l] = mz;
         let mass = if share > 0.0 { 1.0 / view[W + l] } else { 0.0 };
-        let (gx, gy, gz) = (-mx * mass, -my * mass, -mz * mass);
+        let given = [-mx * mass, -my * mass, -mz * mass];
         let x = if share > 0.0 { view[X + l] - ox } else { 0.0 };
         let y = if share > 0.0 { view[Y + l] - oy } else { 0.0 };
         let z = if share > 0.0 { view[Z + l] - oz } else { 0.0 };
-        sums.linear[0][l] += gx;
-        sums.linear[1][l] += gy;
-        sums.linear[2][l] += gz;
-        sums.angular[0][l] += y * gz - z * gy;
-        sums.angular[1][l] += z * gx - x * gz;
-        sums.angular[2][l] += x * gy - y * gx;
+        sums.give(l, given, [x, y, z]);
     }
     momentum
 }
@@ -288,8 +272,7 @@ pub(crate) fn move_corner(
 /// `r² acos(s/r) − s √(r² − s²)`. The arc cosine is a polynomial (Abramowitz and Stegun 4.4.45), with an error of 7·10⁻⁵.
 #[inline(always)]
 fn beyond(inside: f32, radius: f32, square: f32) -> f32 {
-    let inside = if inside < radius { inside } else { radius };
-    let inside = if inside > -radius { inside } else { -radius };
+    let inside = larger(smaller(inside, radius), -radius);
     let part = if radius > 0.0 { inside / radius } else { 1.0 };
     let size = part.abs();
     let arc = (1.0 - size).sqrt()
@@ -317,19 +300,16 @@ pub(crate) fn areas(
         let a = near.areas[0][l] / (normal * near.edges[0][l].sqrt());
         let b = near.areas[1][l] / (normal * near.edges[1][l].sqrt());
         let c = near.areas[2][l] / (normal * near.edges[2][l].sqrt());
-        let least = if a < b { a } else { b };
-        let least = if least < c { least } else { c };
-        let outside = if least < 0.0 { least } else { 0.0 };
+        let least = smaller(smaller(a, b), c);
+        let outside = smaller(least, 0.0);
         let distance = near.distance[l];
         let height = distance * distance - outside * outside;
         let height = if height > 0.0 { height.sqrt() } else { 0.0 };
-        let square = reach * reach - height * height;
-        let square = if square > 0.0 { square } else { 0.0 };
+        let square = larger(reach * reach - height * height, 0.0);
         let radius = square.sqrt();
         let segments =
             beyond(a, radius, square) + beyond(b, radius, square) + beyond(c, radius, square);
-        let area = square * PI - segments;
-        let area = if area > 0.0 { area } else { 0.0 };
+        let area = larger(square * PI - segments, 0.0);
         let is_left = (near.corner[l] < reach * reach) | (least < -0.25 * radius);
         let area = if is_pushed[l] & !is_left { area } else { 0.0 };
         sums.area[l] += area;

@@ -4,10 +4,7 @@ use bevy::math::Vec3;
 
 use crate::{
     cloth::{ClothParticles, MapInline, Surface},
-    contact::{
-        candidates::Candidate,
-        colliders::{MovingCollider, Nearest},
-    },
+    contact::{candidates::Candidate, colliders::MovingCollider},
 };
 
 /// The cloth near a body, with particles of a radius (m).
@@ -71,26 +68,4 @@ fn weights_along(corners: [Vec3; 3], along: Vec3) -> Option<[f32; 3]> {
     let whole: f32 = parts.iter().sum();
     let is_met = whole != 0.0 && parts.iter().all(|part| part / whole >= 0.0);
     is_met.then(|| parts.map_inline(|part| part / whole))
-}
-
-/// The point of a body's surface nearest to a manifold's. That is right to a tenth of a millimetre only, and what stands
-/// would rock.
-pub(super) fn onto(body: &MovingCollider, point: Vec3, passed: f32) -> Vec3 {
-    let Nearest { distance, normal } = body.nearest(passed, point);
-    point - normal * distance
-}
-
-/// The point of the ground below a point of a body, and its normal there: likewise. `rough` is the manifold's.
-pub(super) fn ground_below(
-    above: Vec3,
-    rough: [Vec3; 2],
-    ground: &MovingCollider,
-    passed: f32,
-) -> [Vec3; 2] {
-    let Nearest { distance, normal } = ground.nearest(passed, above);
-    // Inside of it, another side may be nearer.
-    match distance < 0.0 && normal.dot(rough[1]) < 0.99 {
-        true => rough,
-        false => [above - normal * distance, normal],
-    }
 }

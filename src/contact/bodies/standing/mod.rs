@@ -29,5 +29,5 @@ mod stand;
 mod supports;
 
 pub(crate) use cover::Near;
-pub(crate) use stand::{ContactStep, StandingResult};
+pub(crate) use stand::{ContactStep, StandingResponse};
 pub(crate) use supports::{Stand, Supports};

@@ -28,6 +28,15 @@ pub(crate) struct ContactStep<'a> {
     pub substep: SubStep,
 }
 
+/// One of the two responses of a body that stands, in a sub-step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum StandingResponse {
+    /// The body is kept off what it stands on.
+    KeepOff,
+    /// Friction acts on the body, and on the cloth between it and what it stands on, after all else has pushed these.
+    Rub,
+}
+
 /// The result of a sub-step of a body that stands.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StandingResult {
@@ -58,10 +67,8 @@ impl<'a> ContactStep<'a> {
         [moving, ground]: [&ColliderSubstep; 2],
         (mass, centre, particles): (&BodyMass, DVec3, &ClothParticles),
     ) -> StandingPoint {
-        let [above, below] = [
-            moving.pose * support.on_body,
-            ground.pose * support.on_ground,
-        ];
+        let above = moving.pose * support.on_body;
+        let below = ground.pose * support.on_ground;
         let normal = ground.pose.rotation * support.normal;
         let overlap = THICKNESS * self.settings.particle_radius - (above - below).dot(normal);
         let own = moving.surface_motion(above);
@@ -75,9 +82,8 @@ impl<'a> ContactStep<'a> {
             false => older,
         };
         let corners = support.cloth.corners.iter().zip(support.cloth.weights);
-        let coefficient: f32 = corners
-            .map(|(corner, weight)| self.friction(particles, *corner) * weight)
-            .sum();
+        let each = corners.map(|(corner, weight)| self.friction(particles, *corner) * weight);
+        let coefficient: f32 = each.sum();
         let (arm, normal) = (above.as_dvec3() - centre, normal.as_dvec3());
         StandingPoint {
             stand: at[0],
@@ -226,75 +232,41 @@ impl Supports {
 }
 
 impl Body {
-    /// Keeps the body off what it stands on. `None` if it stands on nothing.
+    /// The response of the body at the points where it stands as the sub-step ends. `None` if it stands on nothing.
     pub fn stand(
         &mut self,
         supports: &mut Supports,
         particles: &mut ClothParticles,
         moving: &mut MovingCollider,
         step: &ContactStep,
+        response: StandingResponse,
     ) -> Option<StandingResult> {
-        supports.begin_substep(self.id);
-        self.respond(
-            supports,
-            particles,
-            moving,
-            step,
-            |supports, _, (mass, _)| (push_all(&mut supports.points, mass), 0.0),
-        )
-    }
-
-    /// Lets friction act on the body, and on the cloth between it and what it stands on, after all else has pushed these.
-    /// `None` if it stands on nothing.
-    pub fn apply_friction(
-        &mut self,
-        supports: &mut Supports,
-        particles: &mut ClothParticles,
-        moving: &mut MovingCollider,
-        step: &ContactStep,
-    ) -> Option<StandingResult> {
-        self.respond(
-            supports,
-            particles,
-            moving,
-            step,
-            |supports, particles, (mass, motion)| {
-                let pushed = supports.slow(particles, motion, step);
-                let body = rub_all(&mut supports.points, mass);
-                ([body, Motion::default()], pushed)
-            },
-        )
-    }
-
-    /// Finds the points where the body stands as the sub-step ends, and moves it as `solve` says: by a motion, and by another one
-    /// of its place alone. `solve` also returns the largest displacement of a particle (m).
-    fn respond(
-        &mut self,
-        supports: &mut Supports,
-        particles: &mut ClothParticles,
-        moving: &mut MovingCollider,
-        step: &ContactStep,
-        solve: impl FnOnce(
-            &mut Supports,
-            &mut ClothParticles,
-            (&BodyMass, &ColliderSubstep),
-        ) -> ([Motion; 2], f32),
-    ) -> Option<StandingResult> {
+        if response == StandingResponse::KeepOff {
+            supports.begin_substep(self.id);
+        }
         let (pose, centre) = self.centre(moving, step.substep.end());
-        let mass = *self.mass();
+        let mass = self.mass;
         let motion = moving.in_substep(step.substep);
         supports.begin(self.id, &motion, (&mass, centre, particles), step);
         if supports.points.is_empty() {
             return None;
         }
-        let ([body, released], pushed) = solve(supports, particles, (&mass, &motion));
+        // The motion of the body, one of its place alone, and the largest displacement of a particle (m).
+        let ([body, released], pushed) = match response {
+            StandingResponse::KeepOff => (push_all(&mut supports.points, &mass), 0.0),
+            StandingResponse::Rub => {
+                let pushed = supports.slow(particles, &motion, step);
+                let body = rub_all(&mut supports.points, &mass);
+                ([body, Motion::default()], pushed)
+            }
+        };
         if !(body.is_finite() && released.is_finite()) {
             return None;
         }
         let given = supports.end([centre, Vec3::from(pose.translation).as_dvec3()]);
-        let place = [body.go + released.go, body.turn + released.turn];
-        let changes = [place[0], place[1], body.go, body.turn];
-        let before = self.change();
+        let [go, turn] = [body.go + released.go, body.turn + released.turn];
+        let changes = [go, turn, body.go, body.turn];
+        let before = self.change;
         let gone = self.send_on(moving, step.substep, particles.substep(), changes);
         self.add_held(before);
         Some(StandingResult {

@@ -5,14 +5,14 @@ use std::ops::Range;
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{
-    cover::{Cover, Near, ground_below, onto},
+    cover::{Cover, Near},
     point::StandingPoint,
 };
 use crate::{
     cloth::{ClothParticles, LANES, MapInline, Slot},
     contact::{
         candidates::ContactBlock,
-        colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider, moving_of},
+        colliders::{MOST_POINTS, Manifold, ManifoldPoint, MovingCollider, Nearest, moving_of},
         friction::Impulse,
     },
 };
@@ -133,10 +133,13 @@ impl Supports {
         let first = [self.all.len(), self.between.len()];
         let middle = self.manifold.middle();
         let points = &self.manifold.points;
-        let place = |point: &ManifoldPoint| Place::of(point, [moving, below], passed);
+        let place = |point: &ManifoldPoint| Place::of(point, [moving, below], poses, passed);
         let cover = |point: &ManifoldPoint| {
             let mut inwards = INWARDS.iter().map(|&part| point.lerp(&middle, part));
-            inwards.find_map(|point| place(&point).cover(near))
+            inwards.find_map(|point| {
+                let place = place(&point);
+                near.cover([place.below, place.above], place.normal)
+            })
         };
         let mut cloth = [None; MOST_POINTS];
         for (to, point) in cloth.iter_mut().zip(points) {
@@ -144,25 +147,22 @@ impl Supports {
         }
         for (point, own) in points.iter().zip(&cloth) {
             let is_alike = |other: &ManifoldPoint| other.normal.dot(point.normal) > ALIKE;
-            let others = points
-                .iter()
-                .zip(&cloth)
-                .filter(|(other, _)| is_alike(other));
-            let cloth = own.or_else(|| others.filter_map(|(_, cloth)| *cloth).next());
+            let pairs = points.iter().zip(&cloth);
+            let mut alike = pairs.filter(|(other, _)| is_alike(other));
+            let cloth = own.or_else(|| alike.find_map(|(_, cloth)| *cloth));
             let supported = cloth.map(|cloth| place(point).support(cloth, poses));
             self.all.extend(supported);
         }
-        if self.all.len() == first[0] {
+        let found = &mut self.all[first[0]..];
+        if found.is_empty() {
             return;
         }
-        let heights = self.all[first[0]..].iter().map(|support| support.height);
+        let heights = found.iter().map(|support| support.height);
         let lowest = heights.fold(f32::INFINITY, f32::min);
         let is_close = lowest < (THICKNESS + CLOSE) * near.radius;
         self.between.extend(near.pressed([moving, below], passed));
         if self.between.len() == first[1] {
-            let corners = self.all[first[0]..]
-                .iter()
-                .flat_map(|point| point.cloth.corners);
+            let corners = found.iter().flat_map(|support| support.cloth.corners);
             self.between.extend(corners);
             self.between[first[1]..].sort_unstable();
             self.between.dedup();
@@ -170,8 +170,8 @@ impl Supports {
         let is_it = |stand: &&Stand| (stand.body, stand.ground) == (body, ground);
         let known = self.before.iter().find(is_it);
         let left = known.map_or(0.0, |known| known.left);
-        let count = (self.all.len() - first[0]) as f64;
-        for support in &mut self.all[first[0]..] {
+        let count = found.len() as f64;
+        for support in found {
             support.unspent = left / count;
         }
         self.stands.push(Stand {
@@ -191,10 +191,15 @@ impl Supports {
         moving.turn.length() * (passed - self.searched_at) > ROLLS
     }
 
+    /// The stands on what holds a body in this tick.
+    fn holding(&self, body: usize) -> impl Iterator<Item = &Stand> {
+        let stands = self.stands.iter();
+        stands.filter(move |stand| stand.body == body && stand.holds)
+    }
+
     /// Whether something holds a body in this tick.
     pub fn is_held(&self, body: usize) -> bool {
-        let mut own = self.stands.iter().filter(|stand| stand.body == body);
-        own.any(|stand| stand.holds)
+        self.holding(body).next().is_some()
     }
 
     /// The direction in which a body is held at a fraction of the tick, if it is. Colliders have their IDs.
@@ -204,16 +209,14 @@ impl Supports {
         colliders: &[(usize, MovingCollider)],
         passed: f32,
     ) -> Option<Vec3> {
-        let mut own = self.stands.iter();
-        let stand = own.find(|stand| stand.body == body && stand.holds)?;
+        let stand = self.holding(body).next()?;
         let ground = moving_of(colliders, stand.ground)?;
         Some(ground.pose_at(passed).rotation * self.all[stand.supports.start].normal)
     }
 
     /// Whether a collider holds a body in this tick.
     pub fn is_held_by(&self, body: usize, ground: usize) -> bool {
-        let mut own = self.stands.iter().filter(|stand| stand.body == body);
-        own.any(|stand| stand.ground == ground && stand.holds)
+        self.holding(body).any(|stand| stand.ground == ground)
     }
 
     /// Pins cloth that lies flat on what holds a body while the body pushes other cloth, until [`show`](Self::show). The
@@ -268,24 +271,29 @@ struct Place {
 }
 
 impl Place {
-    fn of(point: &ManifoldPoint, [moving, ground]: [&MovingCollider; 2], passed: f32) -> Self {
-        let [body_pose, ground_pose] =
-            [moving, ground].map_inline(|collider| collider.pose_at(passed));
-        let above = onto(moving, body_pose * point.on_second, passed);
-        let rough = [
-            ground_pose * point.on_first,
-            ground_pose.rotation * point.normal,
-        ];
-        let [below, normal] = ground_below(above, rough, ground, passed);
+    /// The manifold is right to a tenth of a millimetre only, and what stands would rock. So these are the points of the
+    /// surfaces nearest to it. `poses` are those of the body and of the ground.
+    fn of(
+        point: &ManifoldPoint,
+        [body, ground]: [&MovingCollider; 2],
+        poses: [Isometry3d; 2],
+        passed: f32,
+    ) -> Self {
+        let on_body = poses[0] * point.on_second;
+        let nearest = body.nearest(passed, on_body);
+        let above = on_body - nearest.normal * nearest.distance;
+        let Nearest { distance, normal } = ground.nearest(passed, above);
+        let rough = poses[1].rotation * point.normal;
+        // Inside of the ground, another side may be nearer.
+        let [below, normal] = match distance < 0.0 && normal.dot(rough) < 0.99 {
+            true => [poses[1] * point.on_first, rough],
+            false => [above - normal * distance, normal],
+        };
         Self {
             above,
             below,
             normal,
         }
-    }
-
-    fn cover(&self, near: &Near) -> Option<Cover> {
-        near.cover([self.below, self.above], self.normal)
     }
 
     /// The support there, by a piece of cloth. `poses` are those of the body and of the ground.

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{Isometry3d, Vec3},
+    math::{Isometry3d, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
     transform::components::Transform,
 };
@@ -11,7 +11,7 @@ use parry3d::{math::Pose, shape::SharedShape};
 use super::{
     geometry::{ColliderGeometry, Parts},
     shape::ColliderShape,
-    source::{SharedCollider, check_scale},
+    source::{SharedCollider, Source, check_scale},
 };
 use crate::cloth::{ClothError, FARTHEST, MeshError, QuantityError, ShapeError};
 
@@ -158,7 +158,7 @@ impl ClothCollider {
 
     /// The convex hull of points (m), which must not all lie in one plane.
     pub fn convex_hull(points: impl Into<Vec<Vec3>>) -> Self {
-        Self::Shared(SharedCollider::hull(points.into()))
+        Self::Shared(SharedCollider::new(Source::Hull(points.into())))
     }
 
     /// Triangles between vertices (m). A closed mesh, with two triangles at each edge, is solid, whatever its winding
@@ -167,14 +167,19 @@ impl ClothCollider {
     ///
     /// Built once and shared by all clones.
     pub fn trimesh(vertices: impl Into<Vec<Vec3>>, triangles: impl Into<Vec<[u32; 3]>>) -> Self {
-        Self::Shared(SharedCollider::triangles(vertices.into(), triangles.into()))
+        let source = Source::Triangles(vertices.into(), triangles.into());
+        Self::Shared(SharedCollider::new(source))
     }
 
     /// A height field around the entity's origin. `heights` are row by row: rows lie along z, with `columns` heights
     /// along x. `size` (m) is its extent along x and z, and in y the scale of the heights. Everything below it is
     /// inside.
     pub fn heightfield(heights: impl Into<Vec<f32>>, columns: usize, size: Vec3) -> Self {
-        Self::Shared(SharedCollider::height_field(heights.into(), columns, size))
+        Self::Shared(SharedCollider::new(Source::HeightField {
+            heights: heights.into(),
+            columns,
+            size,
+        }))
     }
 
     /// Several shapes as one, each with a pose in the entity's frame (m). Planes and meshes from an asset cannot be
@@ -195,7 +200,7 @@ impl ClothCollider {
 
     /// A shape of parry, the geometry library of rapier. It ignores the transform's scale.
     pub fn parry(shape: SharedShape) -> Self {
-        Self::Shared(SharedCollider::parry(shape))
+        Self::Shared(SharedCollider::new(Source::Parry(shape)))
     }
 
     /// Pose of the shape's frame in the entity's frame: the identity, except for shapes from parry.
@@ -214,7 +219,7 @@ impl ClothCollider {
     /// length may be zero. [`MeshError::NotLoaded`] for a mesh, because only the plugin can access the assets.
     /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
-        let sizes = Scale(scale.abs());
+        let sizes = scale.abs();
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
             Self::Compound(ref parts) => compound(parts, scale),
@@ -223,24 +228,23 @@ impl ClothCollider {
                 radius,
                 half_height,
             } => {
-                let (radius, half_height) = sizes.round(radius, half_height, &CYLINDER)?;
-                let mut parts = Parts::default();
-                parts.add_cylinder(half_height, radius)?;
-                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+                let (radius, half_height) = round(radius, half_height, sizes, &CYLINDER)?;
+                let cylinder = SharedShape::cylinder(half_height, radius);
+                ColliderGeometry::of_parry(Pose::IDENTITY, &cylinder).map(ColliderShape::Geometry)
             }
             Self::Cone {
                 radius,
                 half_height,
             } => {
-                let (radius, half_height) = sizes.round(radius, half_height, &CONE)?;
-                let mut parts = Parts::default();
-                parts.add_cone(half_height, radius, scale.y > 0.0)?;
-                Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
+                let (radius, half_height) = round(radius, half_height, sizes, &CONE)?;
+                let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
+                let pose = if scale.y > 0.0 { Pose::IDENTITY } else { over };
+                let cone = SharedShape::cone(half_height, radius);
+                ColliderGeometry::of_parry(pose, &cone).map(ColliderShape::Geometry)
             }
             Self::Ball { radius } => {
-                let largest = sizes.0.max_element();
                 let names = ["the ball's radius (m)", "the ball's scaled radius (m)"];
-                let radius = length(radius, largest, names)?;
+                let radius = length(radius, sizes.max_element(), names)?;
                 Ok(ColliderShape::Ball { radius })
             }
             Self::Capsule {
@@ -251,9 +255,9 @@ impl ClothCollider {
                     "the capsule's radius (m)",
                     "the capsule's scaled radius (m)",
                 ];
-                let radius = sizes.across(radius, names)?;
+                let radius = length(radius, across(sizes), names)?;
                 let half_length = QuantityError::check(
-                    half_length * sizes.0.y,
+                    half_length * sizes.y,
                     |v| v >= 0.0 && v.is_finite(),
                     "half of the capsule's scaled length (m)",
                     "zero or more",
@@ -269,10 +273,10 @@ impl ClothCollider {
                     "half of the box's scaled length (m)",
                 ];
                 for axis in 0..3 {
-                    length(half_size[axis], sizes.0[axis], names)?;
+                    length(half_size[axis], sizes[axis], names)?;
                 }
                 Ok(ColliderShape::Cuboid {
-                    half_size: half_size * sizes.0,
+                    half_size: half_size * sizes,
                 })
             }
             Self::Plane => Ok(ColliderShape::HalfSpace),
@@ -309,25 +313,20 @@ fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, Quant
     QuantityError::check(value * scale, positive, names[1], "positive")
 }
 
-/// The scale of a shape along each axis, mirrored or not.
-struct Scale(Vec3);
+/// The scale of a radius about the y axis: the larger of x and z.
+fn across(scale: Vec3) -> f32 {
+    scale.x.max(scale.z)
+}
 
-impl Scale {
-    /// A radius about the y axis, scaled by the larger of x and z.
-    fn across(&self, radius: f32, names: [&'static str; 2]) -> Result<f32, QuantityError> {
-        length(radius, self.0.x.max(self.0.z), names)
-    }
-
-    /// The radius and half of the height of a shape that is round about the y axis.
-    fn round(
-        &self,
-        radius: f32,
-        half_height: f32,
-        names: &RoundNames,
-    ) -> Result<(f32, f32), QuantityError> {
-        let radius = self.across(radius, names[0])?;
-        Ok((radius, length(half_height, self.0.y, names[1])?))
-    }
+/// The radius and half of the height of a shape that is round about the y axis.
+fn round(
+    radius: f32,
+    half_height: f32,
+    scale: Vec3,
+    names: &RoundNames,
+) -> Result<(f32, f32), QuantityError> {
+    let radius = length(radius, across(scale), names[0])?;
+    Ok((radius, length(half_height, scale.y, names[1])?))
 }
 
 /// Several shapes as one.

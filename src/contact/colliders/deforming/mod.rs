@@ -68,6 +68,13 @@ struct OnFace {
     weights: [f32; 3],
 }
 
+impl OnFace {
+    #[inline]
+    fn place(&self) -> Vec3 {
+        at(self.corners, self.weights)
+    }
+}
+
 impl DeformingMesh {
     /// A mesh with its vertices at these positions (m) at the beginning and at the end of the tick, one for each vertex of
     /// the topology. `write` returns whether the mesh is mirrored.
@@ -95,11 +102,7 @@ impl DeformingMesh {
 
     /// The minimum and maximum corners of its bounding box along its whole path (m).
     pub fn bounds(&self) -> [Vec3; 2] {
-        let [from, to] = self
-            .0
-            .boxes
-            .first()
-            .map_or_else(Default::default, |of| of.ends);
+        let [from, to] = self.0.boxes.first().map(|of| of.ends).unwrap_or_default();
         union(from, to)
     }
 
@@ -147,14 +150,10 @@ impl Deformed {
     /// Fits the boxes to the positions.
     fn refit(&mut self) {
         let [from, to] = &self.ends;
-        let moved = from
-            .iter()
-            .zip(to)
-            .map(|(from, to)| from.distance_squared(*to));
+        let ends = from.iter().zip(to);
+        let moved = ends.map(|(from, to)| from.distance_squared(*to));
         self.farthest_move = moved.fold(0.0, f32::max).sqrt();
-        let Topology {
-            triangles, nodes, ..
-        } = &*self.topology;
+        let (triangles, nodes) = (&self.topology.triangles, &self.topology.nodes);
         self.boxes.resize(nodes.len(), Boxes::EMPTY);
         for (index, node) in nodes.iter().enumerate().rev() {
             self.boxes[index] = if node.faces.is_empty() {
@@ -183,21 +182,16 @@ impl Deformed {
     fn nearest_face(&self, part: f32, point: Vec3) -> Option<OnFace> {
         let on_face = |face: u32| {
             let corners = self.corners(face, part);
-            let weights = nearest_to_point(corners, point);
-            (
-                at(corners, weights).distance_squared(point),
+            OnFace {
+                face,
                 corners,
-                weights,
-            )
+                weights: nearest_to_point(corners, point),
+            }
         };
         let near = |of: &Boxes| of.distance_squared(part, point);
-        let face = self.least(near, |face| on_face(face).0)?.1;
-        let (_, corners, weights) = on_face(face);
-        Some(OnFace {
-            face,
-            corners,
-            weights,
-        })
+        let distance = |face: u32| on_face(face).place().distance_squared(point);
+        let (_, face) = self.least(near, distance)?;
+        Some(on_face(face))
     }
 
     /// From the distances of the faces, and their displacements relative to that of the point.
@@ -272,7 +266,7 @@ impl Deformed {
     }
 
     fn seen_from(&self, point: Vec3, part: f32, of: &OnFace) -> Nearest {
-        let surface = at(of.corners, of.weights);
+        let surface = of.place();
         let normal = self.normal(of.corners);
         let out = self.out(part, of);
         let is_inside = out.is_some_and(|out| out.dot(point - surface) < 0.0);
@@ -282,9 +276,7 @@ impl Deformed {
     /// A vector that points out of the surface where a point of it is nearest to others: the normal of a face, the mean of
     /// the two of an edge, or of those around a vertex by their angles (Bærentzen and Aanæs 2005). `None` at a border.
     fn out(&self, part: f32, of: &OnFace) -> Option<Vec3> {
-        let Topology {
-            triangles, beside, ..
-        } = &*self.topology;
+        let (triangles, beside) = (&self.topology.triangles, &self.topology.beside);
         let own = self.normal(of.corners).normalize_or_zero();
         let zeros = of.weights.map_inline(|weight| weight == 0.0);
         let around = |vertex: u32| {
@@ -292,11 +284,10 @@ impl Deformed {
             let mut sum = Vec3::ZERO;
             for &face in faces {
                 let corners = self.corners(face, part);
-                let at = triangles[face as usize]
-                    .iter()
-                    .position(|&corner| corner == vertex)?;
-                if beside[face as usize][at] == NONE || beside[face as usize][(at + 2) % 3] == NONE
-                {
+                let mut vertices = triangles[face as usize].iter();
+                let at = vertices.position(|&corner| corner == vertex)?;
+                let others = beside[face as usize];
+                if others[at] == NONE || others[(at + 2) % 3] == NONE {
                     return None;
                 }
                 let [a, b, c] = [0, 1, 2].map_inline(|next| corners[(at + next) % 3]);

@@ -35,10 +35,8 @@ impl SkinnedTriangles {
     ) -> Result<Self, ClothError> {
         check_triangles(positions, triangles)?;
         let (first, merged) = same_places(positions, 0.0);
-        let places: Vec<Vec3> = first
-            .iter()
-            .map(|&vertex| positions[vertex as usize])
-            .collect();
+        let places = first.iter().map(|&vertex| positions[vertex as usize]);
+        let places: Vec<Vec3> = places.collect();
         let of = |corners: &[u32; 3]| corners.map(|corner| merged[corner as usize]);
         let bound = |&vertex: &u32| {
             let vertex = vertex as usize;

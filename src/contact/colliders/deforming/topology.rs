@@ -75,13 +75,9 @@ impl Topology {
             return;
         }
         let all = &mut triangles[of.clone()];
-        let ends = |all: &[[u32; 3]]| {
-            let middles = all.iter().map(middle);
-            middles.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], at| {
-                [low.min(at), high.max(at)]
-            })
-        };
-        let [low, high] = ends(all);
+        let empty = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let middles = all.iter().map(middle);
+        let [low, high] = middles.fold(empty, |[low, high], at| [low.min(at), high.max(at)]);
         let axis = (high - low).max_position();
         let half = all.len() / 2;
         all.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));

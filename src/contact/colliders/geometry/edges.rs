@@ -36,8 +36,8 @@ pub(crate) struct SharpEdge {
 
 /// The edges of a shape in a tree.
 #[derive(Debug, Clone)]
-pub(super) struct SharpEdges {
-    edges: Vec<SharpEdge>,
+pub(in crate::contact::colliders) struct SharpEdges {
+    pub(super) all: Vec<SharpEdge>,
     tree: Bvh,
 }
 
@@ -48,11 +48,6 @@ impl SharpEdge {
         let [a, b] = self.ends;
         let around = Vec3::splat(self.radius);
         [a.min(b) - around, a.max(b) + around]
-    }
-
-    fn bounds(&self) -> Aabb {
-        let [lower, upper] = self.corners();
-        Aabb::new(lower, upper)
     }
 
     /// Distance of a point from it (m), negative inside.
@@ -67,22 +62,19 @@ impl SharpEdge {
 }
 
 impl SharpEdges {
-    pub fn of(edges: Vec<SharpEdge>) -> Self {
-        let leaves: Vec<Aabb> = edges.iter().map(SharpEdge::bounds).collect();
+    pub fn of(all: Vec<SharpEdge>) -> Self {
+        let boxes = all.iter().map(SharpEdge::corners);
+        let leaves: Vec<Aabb> = boxes.map(|[low, high]| Aabb::new(low, high)).collect();
         Self {
             tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &leaves),
-            edges,
+            all,
         }
     }
 
     /// The edge with an index.
     #[inline]
     pub fn get(&self, index: u32) -> &SharpEdge {
-        &self.edges[index as usize]
-    }
-
-    pub fn as_slice(&self) -> &[SharpEdge] {
-        &self.edges
+        &self.all[index as usize]
     }
 
     /// Visits the edges whose boxes overlap a box, with their indices, always in the same order; none of a surface with
@@ -95,7 +87,7 @@ impl SharpEdges {
     ) {
         let around = Aabb::new(lower, upper);
         for index in self.tree.intersect_aabb(&around) {
-            let edge = &self.edges[index as usize];
+            let edge = self.get(index);
             if edge.round < smooth {
                 visit(index, edge);
             }
@@ -109,7 +101,7 @@ impl SharpEdges {
                 within,
                 |node: &BvhNode, _| node.aabb().distance_to_local_point(point, true),
                 |index, _| {
-                    let edge = &self.edges[index as usize];
+                    let edge = self.get(index);
                     (edge.round < smooth).then(|| edge.distance(point).max(0.0))
                 },
             )
@@ -172,18 +164,16 @@ impl MeshEdges {
         let is_tip = tips(vertices.len(), triangles, normal);
         let sharp = self.edges().filter_map(|sides| {
             let ends = sides[0].vertices.map(|vertex| vertices[vertex as usize]);
-            let edge = |outward, part| {
-                Some(SharpEdge {
-                    ends,
-                    outward,
-                    radius: 0.0,
-                    round: 0.0,
-                    part,
-                })
+            let edge = |outward, part| SharpEdge {
+                ends,
+                outward,
+                radius: 0.0,
+                round: 0.0,
+                part,
             };
             let [a, b] = sides else {
                 // A border, or an edge where several sheets meet.
-                return edge(Vec3::ZERO, 1.0);
+                return Some(edge(Vec3::ZERO, 1.0));
             };
             let mut normals = [normal(a.face), normal(b.face)];
             if a.is_forward == b.is_forward {
@@ -195,7 +185,7 @@ impl MeshEdges {
                 return None;
             }
             if !has_inside {
-                return edge(Vec3::ZERO, 1.0);
+                return Some(edge(Vec3::ZERO, 1.0));
             }
             // At a convex edge, the other face lies behind this one.
             let beyond = corners(b.face).map(|corner| normals[0].dot(corner - ends[0]));
@@ -207,11 +197,7 @@ impl MeshEdges {
                 true => 1.0,
                 false => (sine / SHARP_ENOUGH).clamp(LEAST_PART, 1.0),
             };
-            if sticks_out {
-                edge(outward, part)
-            } else {
-                None
-            }
+            sticks_out.then(|| edge(outward, part))
         });
         sharp.collect()
     }
@@ -221,9 +207,9 @@ impl MeshEdges {
 fn tips(vertices: usize, triangles: &[[u32; 3]], normal: impl Fn(u32) -> Vec3) -> Vec<bool> {
     let mut means = vec![Vec3::ZERO; vertices];
     for (face, corners) in (0..).zip(triangles) {
-        corners
-            .iter()
-            .for_each(|&corner| means[corner as usize] += normal(face));
+        for &corner in corners {
+            means[corner as usize] += normal(face);
+        }
     }
     let mut is_tip = vec![false; vertices];
     for (face, corners) in (0..).zip(triangles) {

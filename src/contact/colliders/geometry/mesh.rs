@@ -9,6 +9,9 @@ use super::{
 };
 use crate::cloth::{FARTHEST, MeshError};
 
+/// Positions of vertices (m), and those of each triangle.
+pub(crate) type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
+
 /// A mesh, its inside, and its sharp edges.
 pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
 
@@ -36,26 +39,20 @@ pub(in crate::contact::colliders) fn check_triangles(
     triangles: &[[u32; 3]],
 ) -> Result<(), MeshError> {
     check_vertices(vertices)?;
-    let is_beyond = |triangle: &[u32; 3]| {
-        triangle
-            .iter()
-            .any(|&corner| corner as usize >= vertices.len())
-    };
+    let count = vertices.len();
+    let is_beyond = |triangle: &[u32; 3]| triangle.iter().any(|&corner| corner as usize >= count);
     if let Some(triangle) = triangles.iter().position(is_beyond) {
         return Err(MeshError::TriangleOutOfRange {
             triangle,
             corners: triangles[triangle],
-            vertices: vertices.len(),
+            vertices: count,
         });
     }
-    let area: f32 = triangles
-        .iter()
-        .map(|triangle| {
-            let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
-            (b - a).cross(c - a).length()
-        })
-        .sum();
-    if area <= 0.0 {
+    let areas = triangles.iter().map(|triangle| {
+        let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
+        (b - a).cross(c - a).length()
+    });
+    if areas.sum::<f32>() <= 0.0 {
         return Err(MeshError::WithoutArea {
             triangles: triangles.len(),
         });
@@ -68,8 +65,7 @@ pub(in crate::contact::colliders) fn check_triangles(
 /// # Errors
 /// For a vertex that is not finite or missing, and if no triangle has an area.
 pub(crate) fn build(
-    mut vertices: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+    (mut vertices, triangles): Triangles,
     ground: bool,
 ) -> Result<Built, MeshError> {
     let count = triangles.len();

@@ -15,10 +15,15 @@ pub(crate) use edges::SharpEdge;
 use edges::SharpEdges;
 #[cfg(feature = "mesh")]
 pub(super) use mesh::{check_triangles, volume};
-use parry3d::{math::Pose, shape::Shape};
+use parry3d::{
+    math::Pose,
+    shape::{Shape, SharedShape},
+};
 pub(crate) use parts::{Parts, turn_up};
 pub(super) use solid::towards;
 use solid::{Solid, SolidKind};
+
+use crate::cloth::ClothError;
 
 /// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed
 /// data. Clones share the data. Two geometries are equal if they are clones of each other.
@@ -49,19 +54,23 @@ impl ColliderGeometry {
     /// Builds it from one or more parts.
     pub(crate) fn of(parts: Parts) -> Self {
         let Parts { solids, edges } = parts;
-        let bounds = solids
-            .iter()
-            .map(|solid| solid.bounds)
-            .reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
-            .unwrap_or_default();
+        let boxes = solids.iter().map(|solid| solid.bounds);
+        let bounds = boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
         let thickness = solids.iter().map(Solid::thickness);
         let thickness = thickness.fold(f32::INFINITY, f32::min);
         Self(Arc::new(Geometry {
             edges: SharpEdges::of(edges),
             solids,
-            bounds,
+            bounds: bounds.unwrap_or_default(),
             thickness,
         }))
+    }
+
+    /// A shape of parry with a pose.
+    pub(super) fn of_parry(pose: Pose, shape: &SharedShape) -> Result<Self, ClothError> {
+        let mut parts = Parts::default();
+        parts.add(pose, shape)?;
+        Ok(Self::of(parts))
     }
 
     /// The minimum and maximum corners of its bounding box (m).
@@ -97,7 +106,7 @@ impl ColliderGeometry {
     pub(crate) fn parts(&self) -> Parts {
         Parts {
             solids: self.0.solids.clone(),
-            edges: self.0.edges.as_slice().to_vec(),
+            edges: self.0.edges.all.clone(),
         }
     }
 
@@ -143,25 +152,9 @@ impl ColliderGeometry {
         each.fold(f32::INFINITY, f32::min)
     }
 
-    /// One of its edges.
+    /// Its edges.
     #[inline]
-    pub(crate) fn edge(&self, index: u32) -> SharpEdge {
-        *self.0.edges.get(index)
-    }
-
-    /// Visits the edges whose boxes overlap a box, with their indices, always in the same order; none of a surface with
-    /// a radius of at least `smooth` (m).
-    pub(crate) fn edges_near(
-        &self,
-        within: [Vec3; 2],
-        smooth: f32,
-        visit: impl FnMut(u32, &SharpEdge),
-    ) {
-        self.0.edges.near(within, smooth, visit);
-    }
-
-    /// Distance of the nearest edge (m); infinite if none is within the given distance.
-    pub(crate) fn edge_distance(&self, point: Vec3, within: f32, smooth: f32) -> f32 {
-        self.0.edges.distance(point, within, smooth)
+    pub(super) fn edges(&self) -> &SharpEdges {
+        &self.0.edges
     }
 }

@@ -1,19 +1,17 @@
 //! Converts shapes of parry into parts of a geometry.
 
-use std::sync::Arc;
-
-use bevy::math::{Quat, Vec3};
+use bevy::math::Vec3;
 use parry3d::{
     math::Pose,
-    shape::{SharedShape, TriMesh, Triangle, TypedShape},
+    shape::{SharedShape, Triangle, TypedShape},
 };
 
 use super::{
     edges::SharpEdge,
-    mesh,
+    mesh::{self, Triangles},
     solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
 };
-use crate::cloth::{ClothError, MeshError, ShapeError};
+use crate::cloth::{ClothError, ShapeError};
 
 /// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
 /// most 0.2 % of the radius below.
@@ -26,8 +24,6 @@ pub(crate) struct Parts {
     pub(super) edges: Vec<SharpEdge>,
 }
 
-type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
-
 impl Parts {
     /// Adds triangles as a mesh, or as ground with everything below.
     ///
@@ -36,27 +32,30 @@ impl Parts {
     pub fn add_mesh(
         &mut self,
         pose: Pose,
-        (vertices, triangles): Triangles,
+        triangles: Triangles,
         is_ground: bool,
     ) -> Result<(), ClothError> {
-        let (mesh, sides, edges) = mesh::build(vertices, triangles, is_ground)?;
-        self.add_built(pose, mesh.into(), sides);
+        let (mesh, sides, edges) = mesh::build(triangles, is_ground)?;
+        self.add_solid(pose, SolidKind::Mesh(mesh.into(), sides));
         self.add_edges(pose, &edges, 0.0);
         Ok(())
     }
 
-    fn add_built(&mut self, pose: Pose, mesh: Arc<TriMesh>, sides: MeshSides) {
-        let bounds = mesh.aabb(&pose);
+    fn add_solid(&mut self, pose: Pose, kind: SolidKind) {
+        let bounds = match &kind {
+            SolidKind::Convex(shape) => shape.compute_aabb(&pose),
+            SolidKind::Mesh(mesh, _) => mesh.aabb(&pose),
+        };
         // The ground reaches as deep as it is wide, for particles that have got below it.
         let extents = bounds.extents();
-        let below = match sides {
-            MeshSides::Ground => Vec3::Y * extents.x.max(extents.z),
-            MeshSides::Open | MeshSides::Closed => Vec3::ZERO,
+        let below = match &kind {
+            SolidKind::Mesh(_, MeshSides::Ground) => Vec3::Y * extents.x.max(extents.z),
+            _ => Vec3::ZERO,
         };
         self.solids.push(Solid {
             pose,
             bounds: [bounds.mins - below, bounds.maxs],
-            kind: SolidKind::Mesh(mesh, sides),
+            kind,
         });
     }
 
@@ -66,14 +65,14 @@ impl Parts {
     /// [`ShapeError::FlatHull`] if it has no volume.
     fn add_hull(&mut self, pose: Pose, triangles: Triangles) -> Result<(), ClothError> {
         let points = triangles.0.len();
-        let (mesh, sides, edges) = mesh::build(triangles.0, triangles.1, false)?;
+        let (mesh, sides, edges) = mesh::build(triangles, false)?;
         let size = mesh.local_aabb().extents().as_dvec3().max_element();
         if sides != MeshSides::Closed
             || mesh::volume(mesh.vertices(), mesh.indices()) <= 1.0e-9 * size.powi(3)
         {
             return Err(ShapeError::FlatHull { points }.into());
         }
-        self.add_built(pose, mesh.into(), sides);
+        self.add_solid(pose, SolidKind::Mesh(mesh.into(), sides));
         self.add_edges(pose, &edges, 0.0);
         Ok(())
     }
@@ -94,16 +93,6 @@ impl Parts {
         self.add_hull(Pose::IDENTITY, hull)
     }
 
-    /// Adds a shape whose nearest point parry computes, with the edges of triangles on it.
-    fn add_convex(&mut self, pose: Pose, shape: SharedShape) {
-        let bounds = shape.compute_aabb(&pose);
-        self.solids.push(Solid {
-            pose,
-            bounds: [bounds.mins, bounds.maxs],
-            kind: SolidKind::Convex(shape),
-        });
-    }
-
     /// A convex shape, given by triangles on it or in it, and its radius around those (m).
     fn add_round(
         &mut self,
@@ -112,14 +101,14 @@ impl Parts {
         triangles: Triangles,
         radius: f32,
     ) -> Result<(), ClothError> {
-        let (_, _, edges) = build(triangles)?;
-        self.add_convex(pose, shape);
+        let (.., edges) = mesh::build(triangles, false)?;
+        self.add_solid(pose, SolidKind::Convex(shape));
         self.add_edges(pose, &edges, radius);
         Ok(())
     }
 
     fn add_line(&mut self, pose: Pose, shape: SharedShape, ends: [Vec3; 2], radius: f32) {
-        self.add_convex(pose, shape);
+        self.add_solid(pose, SolidKind::Convex(shape));
         let line = SharpEdge {
             ends,
             outward: Vec3::ZERO,
@@ -139,33 +128,12 @@ impl Parts {
         }));
     }
 
-    /// Adds a cylinder along the y axis.
-    pub fn add_cylinder(&mut self, half_height: f32, radius: f32) -> Result<(), ClothError> {
-        self.add(Pose::IDENTITY, &SharedShape::cylinder(half_height, radius))
-    }
-
-    /// Adds a cone along the y axis with its tip up or down.
-    pub fn add_cone(
-        &mut self,
-        half_height: f32,
-        radius: f32,
-        is_upright: bool,
-    ) -> Result<(), ClothError> {
-        let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
-        let pose = if is_upright { Pose::IDENTITY } else { over };
-        self.add(pose, &SharedShape::cone(half_height, radius))
-    }
-
     /// Adds other parts with a pose.
     pub fn add_parts(&mut self, pose: Pose, parts: Self) {
         let Self { solids, edges } = parts;
         self.add_edges(pose, &edges, 0.0);
         for solid in solids {
-            let pose = pose * solid.pose;
-            match solid.kind {
-                SolidKind::Convex(shape) => self.add_convex(pose, shape),
-                SolidKind::Mesh(mesh, sides) => self.add_built(pose, mesh, sides),
-            }
+            self.add_solid(pose * solid.pose, solid.kind);
         }
     }
 
@@ -210,16 +178,16 @@ impl Parts {
             TypedShape::ConvexPolyhedron(hull) => self.add_hull(pose, hull.to_trimesh())?,
             TypedShape::Cuboid(cuboid) => self.add_round(pose, shape, cuboid.to_trimesh(), 0.0)?,
             TypedShape::Cylinder(cylinder) => {
-                let (_, _, mut edges) = build(cylinder.to_trimesh(SIDES))?;
+                let (.., mut edges) = mesh::build(cylinder.to_trimesh(SIDES), false)?;
                 for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
                     (edge.round, edge.part) = (cylinder.radius, 1.0);
                 }
-                self.add_convex(pose, shape);
+                self.add_solid(pose, SolidKind::Convex(shape));
                 self.add_edges(pose, &edges, 0.0);
             }
             TypedShape::Cone(cone) => {
-                let (_, _, edges) = build(cone.to_trimesh(SIDES))?;
-                self.add_convex(pose, shape);
+                let (.., edges) = mesh::build(cone.to_trimesh(SIDES), false)?;
+                self.add_solid(pose, SolidKind::Convex(shape));
                 self.add_edges(pose, &in_pieces(&edges, cone.radius), 0.0);
             }
             TypedShape::RoundCuboid(round) => {
@@ -251,12 +219,6 @@ impl Parts {
         }
         Ok(())
     }
-}
-
-fn build(
-    (vertices, triangles): Triangles,
-) -> Result<(TriMesh, MeshSides, Vec<SharpEdge>), MeshError> {
-    mesh::build(vertices, triangles, false)
 }
 
 /// Whether an edge runs along the side of a cylinder or cone, and not around it.
@@ -306,13 +268,14 @@ fn are_flat(points: &[Vec3]) -> bool {
         return true;
     };
     let farthest = |measure: &dyn Fn(Vec3) -> f64| {
-        let measured = points.iter().map(|&point| (measure(point), point));
-        measured.fold(
-            (0.0, first),
-            |best, next| {
-                if next.0 > best.0 { next } else { best }
-            },
-        )
+        let mut best = (0.0, first);
+        for &point in points {
+            let measured = measure(point);
+            if measured > best.0 {
+                best = (measured, point);
+            }
+        }
+        best
     };
     let from = |point: Vec3| point.as_dvec3() - first.as_dvec3();
     let (size, second) = farthest(&|point| from(point).length());

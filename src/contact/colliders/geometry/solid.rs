@@ -135,15 +135,9 @@ pub(in crate::contact::colliders) fn towards(
         };
     }
     let away = offset / distance;
-    if is_inside {
-        Nearest {
-            distance: -distance,
-            normal: -away,
-        }
-    } else {
-        Nearest {
-            distance,
-            normal: away,
-        }
-    }
+    let (distance, normal) = match is_inside {
+        true => (-distance, -away),
+        false => (distance, away),
+    };
+    Nearest { distance, normal }
 }

@@ -11,12 +11,12 @@ use super::{
     lanes::Cells,
 };
 use crate::{
-    cloth::{ClothParticles, Fans, Slot},
+    cloth::{ClothParticles, Fans, LANES, Slot},
     contact::{
         candidates::{Candidate, ContactBlock},
         colliders::ColliderShape,
         friction::FrictionBudget,
-        particles::{ContactResult, LaneMotion, Sums},
+        particles::{ContactResult, Sums},
     },
 };
 
@@ -45,43 +45,20 @@ pub(crate) struct TrianglePush<'a> {
     pub budgets: &'a mut [FrictionBudget],
     pub fans: &'a Fans,
     /// Number of triangles that may push each particle.
-    max_faces: f32,
+    pub max_faces: f32,
     /// Largest push before candidates may be missing (m).
     pub clearance: f32,
     /// Largest displacement in the sub-step (m).
     pub moved: f32,
     /// Whether areas are wanted.
     pub is_measured: bool,
-    /// Result of the sub-step.
+    /// Result of the sub-step so far.
     pub found: ContactResult,
-    /// Largest push by one triangle in this pass (m).
-    passed: f32,
+    /// Largest push by one triangle in this pass so far (m).
+    pub passed: f32,
 }
 
-impl<'a> TrianglePush<'a> {
-    pub fn new(
-        candidates: &'a [Candidate],
-        (contacts, first): (&'a mut [ContactBlock], usize),
-        budgets: &'a mut [FrictionBudget],
-        (fans, max_faces): (&'a Fans, f32),
-        [clearance, moved]: [f32; 2],
-        is_measured: bool,
-    ) -> Self {
-        Self {
-            candidates,
-            contacts,
-            first,
-            budgets,
-            fans,
-            max_faces,
-            clearance,
-            moved,
-            is_measured,
-            found: ContactResult::default(),
-            passed: 0.0,
-        }
-    }
-
+impl TrianglePush<'_> {
     /// Pushes triangles out of a collider that they touch or passed through in this sub-step. Each push moves the
     /// corners by their weights in the nearest point and their inverse masses. Friction then acts on their particles.
     ///
@@ -90,7 +67,7 @@ impl<'a> TrianglePush<'a> {
     pub fn push(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
+        motion: &CoreMotion,
         from: ResumePoint,
     ) -> Option<ResumePoint> {
         let mut resume = from;
@@ -100,8 +77,8 @@ impl<'a> TrianglePush<'a> {
         };
         while resume.pass < MAX_PASSES {
             let stops = match ball {
-                Some(centre) => self.push_cells(particles, (motion, lanes), centre, &mut resume),
-                None => self.push_each(particles, (motion, lanes), &mut resume),
+                Some(centre) => self.push_cells(particles, motion, centre, &mut resume),
+                None => self.push_each(particles, motion, &mut resume),
             };
             self.found.farthest_push += self.passed * self.max_faces;
             self.passed = 0.0;
@@ -118,7 +95,7 @@ impl<'a> TrianglePush<'a> {
                 ..ResumePoint::default()
             };
         }
-        self.hold(particles, (motion, lanes));
+        self.hold(particles, motion);
         None
     }
 
@@ -126,13 +103,13 @@ impl<'a> TrianglePush<'a> {
     fn push_each(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
+        motion: &CoreMotion,
         resume: &mut ResumePoint,
     ) -> bool {
-        let push_out = lanes.push_out;
+        let odometer = motion.lanes.odometer;
         for contact in self.contacts.iter_mut() {
             // False for NaN.
-            let is_clear = lanes.odometer < contact.faces_clear_until;
+            let is_clear = odometer < contact.faces_clear_until;
             contact.are_faces_due = !is_clear;
             if !is_clear {
                 contact.faces_clear_until = f32::INFINITY;
@@ -145,23 +122,23 @@ impl<'a> TrianglePush<'a> {
             if fan.faces.is_empty() {
                 continue;
             }
-            let now = lanes.odometer + self.pushed();
-            let of = &self.contacts[contact];
+            let now = odometer + self.pushed();
+            let of = &mut self.contacts[contact];
             if !of.are_faces_due && now < of.faces_clear_until {
                 continue;
             }
             let slot = Slot {
-                block: self.contacts[contact].block as usize,
+                block: of.block as usize,
                 lane,
             };
             let [clear, speed] = motion.clearance(particles.blocks(), slot, fan.corners);
+            let until = odometer * (1.0 - 1.0e-5) + clear;
             let until = if clear > 0.0 {
-                lanes.odometer * (1.0 - 1.0e-5) + clear
+                until
             } else {
                 f32::NEG_INFINITY
             };
-            let contact_block = &mut self.contacts[contact];
-            contact_block.faces_clear_until = contact_block.faces_clear_until.min(until);
+            of.faces_clear_until = of.faces_clear_until.min(until);
             if clear > speed {
                 continue;
             }
@@ -170,7 +147,7 @@ impl<'a> TrianglePush<'a> {
                     continue;
                 }
                 let slots = fan.slots(face);
-                self.push_one(particles, motion, (contact, lane), slots, &push_out, resume);
+                self.push_one(particles, motion, (contact, lane), slots, resume);
                 if self.is_full() {
                     resume.at = (candidate.particle, which + 1);
                     return true;
@@ -201,7 +178,7 @@ impl<'a> TrianglePush<'a> {
     fn push_cells(
         &mut self,
         particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
+        motion: &CoreMotion,
         centre: Vec3,
         resume: &mut ResumePoint,
     ) -> bool {
@@ -219,28 +196,21 @@ impl<'a> TrianglePush<'a> {
                 max_faces: self.max_faces,
                 is_measured: self.is_measured && resume.pass == 0,
             };
-            let blocks = particles.blocks_mut();
-            let of = (lanes, &cells);
-            let (stop, next) = push_cells(
-                blocks,
-                self.contacts,
-                self.budgets,
-                of,
-                resume.place,
-                &mut sums,
-            );
+            let (blocks, from) = (particles.blocks_mut(), resume.place);
+            let (contacts, budgets) = (&mut *self.contacts, &mut *self.budgets);
+            let of = (&motion.lanes, &cells);
+            let (stop, next) = push_cells(blocks, contacts, budgets, of, from, &mut sums);
             resume.place = next;
             self.passed = self.passed.max(sums.passed);
             match stop {
                 Stop::Left {
                     contact,
                     which,
-                    lanes: left,
+                    lanes,
                 } => {
-                    for (lane, _) in left.iter().enumerate().filter(|(_, is_left)| **is_left) {
+                    for lane in (0..LANES).filter(|&lane| lanes[lane]) {
                         let slots = slots_of(layout, &self.contacts[contact], which, lane);
-                        let at = (contact, lane);
-                        self.push_one(particles, motion, at, slots, &lanes.push_out, resume);
+                        self.push_one(particles, motion, (contact, lane), slots, resume);
                     }
                 }
                 Stop::Room => {}
@@ -256,30 +226,19 @@ impl<'a> TrianglePush<'a> {
     }
 
     /// Applies friction to the pushed particles.
-    fn hold(
-        &mut self,
-        particles: &mut ClothParticles,
-        (motion, lanes): (&CoreMotion, &LaneMotion),
-    ) {
+    fn hold(&mut self, particles: &mut ClothParticles, motion: &CoreMotion) {
         let [start, end] = motion.at_end;
         let along = end - start;
         let core = CapsuleCore {
             axis: along.normalize_or_zero().to_array(),
             half_length: along.length() / 2.0,
-            radius: motion.reach - motion.settings.particle_radius,
+            radius: motion.reach - motion.lanes.particle_radius,
         };
         let seconds = particles.substep();
         let mut sums = Sums::default();
         let blocks = particles.blocks_mut();
-        hold_all(
-            blocks,
-            self.contacts,
-            self.budgets,
-            &core,
-            lanes,
-            seconds,
-            &mut sums,
-        );
+        let (contacts, budgets, lanes) = (&*self.contacts, &mut *self.budgets, &motion.lanes);
+        hold_all(blocks, contacts, budgets, &core, lanes, seconds, &mut sums);
         let farthest = self.found.farthest_push;
         self.found.add(&sums);
         // Friction comes after all pushes.

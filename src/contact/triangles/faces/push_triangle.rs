@@ -7,11 +7,8 @@ use crate::{
     cloth::{ClothParticles, MapInline, Slot},
     contact::{
         colliders::{at, cap},
-        friction::{Contact, PushOut},
-        triangles::{
-            corners::{CoreMotion, Corners, Touching},
-            lanes::MAX_SHARE,
-        },
+        friction::Contact,
+        triangles::corners::{CoreMotion, Corners, Touching},
     },
 };
 
@@ -23,30 +20,30 @@ impl TrianglePush<'_> {
         motion: &CoreMotion,
         (contact, lane): (usize, usize),
         slots: [Slot; 3],
-        push_out: &PushOut,
         resume: &mut ResumePoint,
     ) {
         let reach = motion.reach;
         let corners = Corners::of(particles, slots);
-        let Some((touch, depth)) = motion.touch(&corners) else {
+        let Some(touch) = motion.touch(&corners) else {
             return;
         };
+        let depth = touch.depth.min(reach);
         let own = &mut self.contacts[contact].depth[lane];
-        *own = own.max(depth.min(reach));
-        if depth <= 0.0 {
+        *own = own.max(depth);
+        if touch.depth <= 0.0 {
             return;
         }
         let pushed = if touch.is_swept {
-            self.push_corners(particles, &corners, &touch, motion, push_out)
+            self.push_corners(particles, &corners, &touch, motion)
         } else {
-            self.push_point(particles, &corners, (&touch, depth), motion, push_out)
+            self.push_point(particles, &corners, &touch, motion)
         };
         if pushed == 0.0 {
             return;
         }
         resume.is_swept |= touch.is_swept;
         self.passed = self.passed.max(pushed);
-        self.found.deepest = self.found.deepest.max(depth.min(reach));
+        self.found.deepest = self.found.deepest.max(depth);
         if self.is_measured && resume.pass == 0 {
             let (area, volume) = cap(corners.positions, touch.centre, reach);
             self.found.area += area;
@@ -60,30 +57,19 @@ impl TrianglePush<'_> {
         &mut self,
         particles: &mut ClothParticles,
         corners: &Corners,
-        (touch, depth): (&Touching, f32),
+        touch: &Touching,
         motion: &CoreMotion,
-        push_out: &PushOut,
     ) -> f32 {
-        let (weights, normal) = (touch.weights, touch.normal);
-        let parts = [0, 1, 2].map_inline(|corner| weights[corner] * corners.inverse_masses[corner]);
-        let mobility: f32 = (0..3).map(|corner| weights[corner] * parts[corner]).sum();
-        // A corner with a tiny weight beside pins cannot make up for them: it would be thrown away.
-        let mobility = mobility.max(parts[0].max(parts[1]).max(parts[2]) / MAX_SHARE);
-        if mobility == 0.0 {
+        let (weights, normal, depth) = (touch.weights, touch.normal, touch.depth);
+        let Some(shares) = corners.shares(weights) else {
             return 0.0;
-        }
-        let point =
-            at(corners.positions, weights) + normal * (depth - motion.settings.particle_radius);
-        let surface = motion.of.surface_motion(point);
-        let [momentum, far] = Contact {
-            normal,
-            depth,
-            relative: at(corners.displacements, weights) - surface,
-        }
-        .stopped_and_out(push_out);
+        };
+        let point = [corners.positions, corners.displacements].map_inline(|of| at(of, weights));
+        let radius = motion.lanes.particle_radius;
+        let contact = Contact::of(&motion.of, point, (normal, depth), radius);
+        let [momentum, far] = contact.stopped_and_out(&motion.lanes.push_out);
         let mut farthest = 0.0_f32;
-        for (corner, part) in parts.into_iter().enumerate() {
-            let share = part / mobility;
+        for (corner, share) in shares.into_iter().enumerate() {
             if share > 0.0 {
                 let push = [normal * (far * share), normal * (momentum * share)];
                 farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
@@ -101,7 +87,6 @@ impl TrianglePush<'_> {
         corners: &Corners,
         touch: &Touching,
         motion: &CoreMotion,
-        push_out: &PushOut,
     ) -> f32 {
         let normal = touch.normal;
         let mut farthest = 0.0_f32;
@@ -111,14 +96,10 @@ impl TrianglePush<'_> {
             if depth <= 0.0 || corners.inverse_masses[corner] == 0.0 {
                 continue;
             }
-            let point = position + normal * (depth - motion.settings.particle_radius);
-            let surface = motion.of.surface_motion(point);
-            let contact = Contact {
-                normal,
-                depth,
-                relative: corners.displacements[corner] - surface,
-            };
-            let [momentum, _] = contact.stopped_and_out(push_out);
+            let point = [position, corners.displacements[corner]];
+            let radius = motion.lanes.particle_radius;
+            let contact = Contact::of(&motion.of, point, (normal, depth), radius);
+            let [momentum, _] = contact.stopped_and_out(&motion.lanes.push_out);
             // All of it at once: the collider would pass a triangle left behind.
             let push = [normal * depth, normal * momentum];
             farthest = farthest.max(self.move_corner(particles, corners, corner, push, motion));
@@ -136,18 +117,13 @@ impl TrianglePush<'_> {
         motion: &CoreMotion,
     ) -> f32 {
         let slot = corners.slots[corner];
-        let pushed = corners.push(corner, particles, [displacement, momentum]);
-        let weight = corners.inverse_masses[corner];
-        self.found
-            .given
-            .add(pushed - motion.of.origin, momentum, weight);
+        let by = (&mut self.found.given, motion.of.origin);
+        let distance = corners.push(corner, particles, [displacement, momentum], by);
         let block = slot.block as u32;
-        if let Ok(at) = self
-            .contacts
-            .binary_search_by_key(&block, |contact| contact.block)
-        {
+        let at = (self.contacts).binary_search_by_key(&block, |contact| contact.block);
+        if let Ok(at) = at {
             self.budgets[at].add_one(slot.lane, momentum.to_array());
         }
-        displacement.length()
+        distance
     }
 }
