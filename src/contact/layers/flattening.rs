@@ -42,8 +42,12 @@ impl<'a> Flattening<'a> {
         }
     }
 
-    /// Lays these faces flat, with those between them; `None` if they are not flat enough, or not whole.
-    pub fn flatten(&mut self, of: impl Iterator<Item = [u32; 3]>) -> Option<Flattened> {
+    /// Lays these faces and vertices flat, with the faces between them; `None` if they are not flat enough, or not whole.
+    pub fn flatten(
+        &mut self,
+        of: impl Iterator<Item = [u32; 3]>,
+        vertices: &[u32],
+    ) -> Option<Flattened> {
         self.part += 1;
         self.faces.clear();
         let (rest, all) = (self.surface.rest_positions(), self.surface.faces().all());
@@ -65,9 +69,12 @@ impl<'a> Flattening<'a> {
             Vec2::new(across.dot(at), down.dot(at))
         };
         let points = self.faces.iter().flat_map(|&face| all[face as usize]);
+        let points = points.chain(vertices.iter().copied());
         let hull = Hull::of(points.map(place).collect());
         self.fill(&hull, place)?;
-        self.laid(place, normal)
+        let laid = self.laid(place, normal)?;
+        let is_laid = |vertex: &u32| self.last_of_particle[*vertex as usize][0] == self.part;
+        vertices.iter().all(is_laid).then_some(laid)
     }
 
     /// Adds the faces between those that there are, until they cover their hull; `None` if some are missing.

@@ -128,7 +128,8 @@ impl Sheet {
                 let particles = sheet.particles_of(patch);
                 let faces = sheet.faces_of(patch).iter();
                 let named = |face: &[u16; 3]| face.map(|corner| particles[usize::from(corner)]);
-                faces.map(named).collect()
+                let owned = usize::from(sheet.owned_of(patch));
+                (faces.map(named).collect(), &particles[..owned])
             },
         );
         sheet

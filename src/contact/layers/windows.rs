@@ -25,13 +25,13 @@ pub(super) struct Windows {
 }
 
 impl Windows {
-    /// The windows of patches of a surface. `patches_with` returns the patches with features of a particle, in order, `faces_of` the
-    /// faces of a patch.
+    /// The windows of patches of a surface. `patches_with` returns the patches with features of a particle, in order, `features_of` the
+    /// faces and the vertices of a patch.
     pub fn new<'a>(
         surface: &'a Surface,
         patches: usize,
         patches_with: impl Fn(u32) -> &'a [u32],
-        faces_of: impl Fn(u32) -> Vec<[u32; 3]>,
+        features_of: impl Fn(u32) -> (Vec<[u32; 3]>, &'a [u32]),
     ) -> Self {
         let mut sets: Vec<&[u32]> = (0..surface.len() as u32).map(patches_with).collect();
         sets.sort_unstable_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
@@ -64,8 +64,9 @@ impl Windows {
         neighbours.dedup();
         let mut flattening = Flattening::new(surface);
         let flattened = windows.iter().map(|patches| {
-            let faces = patches.iter().flat_map(|&patch| faces_of(patch));
-            flattening.flatten(faces)
+            let (faces, vertices): (Vec<_>, Vec<_>) =
+                patches.iter().map(|&patch| features_of(patch)).unzip();
+            flattening.flatten(faces.into_iter().flatten(), &vertices.concat())
         });
         let flattened = flattened.collect();
         let each = windows.iter().enumerate();
