@@ -82,9 +82,9 @@ impl Forces {
         self.inputs = inputs;
         self.layout = surface.layout();
         self.airflow = Airflow::of(inputs.air, inputs.pressure, self.airflow.take(), surface);
-        self.linearized
-            .resize(self.layout.blocks(), LinearForce::NONE);
-        self.places.resize(self.layout.blocks(), [0.0; LANES]);
+        let blocks = surface.layout().blocks();
+        self.linearized.resize(blocks, LinearForce::NONE);
+        self.places.resize(blocks, [0.0; LANES]);
     }
 
     /// Sets a wind that depends on the position, in place of [`Air::wind`], until forces are set again. `at` takes a
