@@ -8,7 +8,10 @@ use std::time::Duration;
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::ClothMaterial,
-    solver::{Air, Bending, ClothCreasing, ForceInputs, SimdLevel, Solver},
+    solver::{
+        Bending, ClothCreasing, SimdLevel, Solver,
+        forces::{Air, ForceInputs},
+    },
 };
 use criterion::{
     BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,

@@ -69,7 +69,8 @@ mod chains;
 mod damping_reference;
 mod energy;
 mod envelope;
-mod forces;
+#[doc(hidden)]
+pub mod forces;
 mod free_pieces;
 mod kernels;
 mod list;
@@ -97,9 +98,6 @@ pub(crate) use bending::creases_of_torn;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
 pub use forces::ClothPressure;
-pub(crate) use forces::ForceMemory;
-#[doc(hidden)]
-pub use forces::{Air, ForceInputs, Forces};
 pub(crate) use free_pieces::FreePieces;
 #[doc(hidden)]
 pub use kernels::SimdLevel;

@@ -9,8 +9,9 @@ use bevy_drape::{
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::ClothCollider,
     solver::{
-        Air, Bending, ClothCreasing, Control, ForceInputs, PinMotion, Solver, Stretch, Substepping,
-        Tethers, TickStep,
+        Bending, ClothCreasing, Control, PinMotion, Solver, Stretch, Substepping, Tethers,
+        TickStep,
+        forces::{Air, ForceInputs},
     },
 };
 use stats_alloc::Region;

@@ -5,7 +5,10 @@ use std::f64::consts::FRAC_PI_2;
 use bevy::math::{DVec3, Quat, Vec3};
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Air, Bending, ForceInputs, Solver, TickStep},
+    solver::{
+        Bending, Solver, TickStep,
+        forces::{Air, ForceInputs},
+    },
 };
 use examples_shared::sheet::{GRAVITY, threads};
 

@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
-    solver::{ClothPressure, ForceInputs, Solver, TickStep},
+    solver::{ClothPressure, Solver, TickStep, forces::ForceInputs},
 };
 use examples_shared::sheet::threads;
 

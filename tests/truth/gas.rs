@@ -8,7 +8,7 @@ use bevy::{
 };
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
-    solver::{ClothPressure, ForceInputs, Solver, TickStep},
+    solver::{ClothPressure, Solver, TickStep, forces::ForceInputs},
 };
 use examples_shared::sheet::threads;
 

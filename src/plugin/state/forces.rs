@@ -15,7 +15,7 @@ use crate::{
         authoring::{ClothAir, PlacedZone},
         frame::{ClothFrame, Shift},
     },
-    solver::{Air, ClothPressure, ForceInputs, ForceMemory, Forces},
+    solver::forces::{Air, ClothPressure, ForceInputs, ForceMemory, Forces},
 };
 
 /// The components of a cloth that say which forces act on it.
@@ -163,16 +163,16 @@ impl ForceState {
     /// Largest acceleration (m/s²) that they may give a cloth whose lightest part has this areal density (kg/m²), at this largest `speed`
     /// (m/s). Within one tick of `seconds`, wind does not accelerate it beyond the wind's speed.
     pub fn acceleration(&self, areal_density: f32, speed: f32, seconds: f32) -> f32 {
-        let GameForces { wind, pressure } = &self.known;
-        let inside = pressure.map_or(0.0, |of| of.acceleration(areal_density, seconds));
-        let Some(EffectiveWind { air, deviation, .. }) = wind else {
-            return inside;
+        let pressure = self.known.pressure;
+        let others = pressure.map_or(0.0, |of| of.acceleration(areal_density, seconds));
+        let Some(EffectiveWind { air, deviation, .. }) = self.known.wind else {
+            return others;
         };
         let zones = self.zones.iter().map(PlacedZone::fastest);
         let fastest = air.wind.length() + 2.0 * deviation + zones.sum::<f32>();
         let relative = fastest + speed;
         let force = 0.5 * air.density * (air.drag + air.lift) * relative * relative;
         let most = relative / seconds.max(f32::MIN_POSITIVE);
-        inside + (force / areal_density).min(most)
+        others + (force / areal_density).min(most)
     }
 }

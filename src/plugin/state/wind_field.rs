@@ -13,7 +13,7 @@ use crate::{
         authoring::{ClothAir, ClothWind, DENSITY, PlacedZone},
         frame::Shift,
     },
-    solver::Air,
+    solver::forces::Air,
 };
 
 /// Far apart in the noise, so that its values along the three axes are independent.
