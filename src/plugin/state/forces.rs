@@ -160,8 +160,8 @@ impl ForceState {
         }
     }
 
-    /// Largest acceleration (m/s²) that they may give a cloth whose lightest part has this areal density (kg/m²), at this largest `speed`
-    /// (m/s). Within one tick of `seconds`, wind does not accelerate it beyond the wind's speed.
+    /// Largest acceleration (m/s²) that they may give a cloth whose lightest part has this areal density (kg/m²), at this
+    /// largest `speed` (m/s). Within one tick of `seconds`, wind does not accelerate it beyond the wind's speed.
     pub fn acceleration(&self, areal_density: f32, speed: f32, seconds: f32) -> f32 {
         let pressure = self.known.pressure;
         let others = pressure.map_or(0.0, |of| of.acceleration(areal_density, seconds));

@@ -73,7 +73,7 @@ pub(crate) struct ForceMemory {
 }
 
 impl Forces {
-    /// Sets the forces on the surface that the solver was made for, with a uniform wind. None of them cost nothing.
+    /// Sets the forces on the surface that the solver was made for, with a uniform wind. Without any, a tick costs no more.
     pub fn set(&mut self, surface: &Surface, inputs: ForceInputs) {
         if inputs == ForceInputs::default() {
             *self = Self::default();

@@ -221,8 +221,7 @@ impl Solver {
         Some(substep)
     }
 
-    /// Moves the particles by the next sub-step of the kind as far as no springs act on them. `weight` is that
-    /// of a force in it (s²).
+    /// Moves the particles by the next sub-step of the kind under gravity and forces alone. `weight` is that of a force in it (s²).
     fn predict(
         &mut self,
         particles: &mut ClothParticles,

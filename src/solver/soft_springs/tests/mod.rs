@@ -1,4 +1,4 @@
-//! Forces against the same springs in f64, partitions against one partition, and when they are chosen.
+//! Soft springs against the same ones in f64, partitions against one partition, and when they are chosen.
 
 mod torn;
 
