@@ -8,7 +8,10 @@ use std::time::Duration;
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::ClothMaterial,
-    solver::{Air, Bending, ClothCreasing, SimdLevel, Solver},
+    solver::{
+        Bending, ClothCreasing, SimdLevel, Solver,
+        forces::{Air, ForceInputs},
+    },
 };
 use criterion::{
     BatchSize, BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
@@ -153,7 +156,6 @@ fn air(criterion: &mut Criterion) {
         drag: 1.2,
         lift: 1.5,
         wind: Vec3::new(2.0, 0.0, 8.0),
-        pressure: None,
     };
     for side in [16, 64, 128] {
         let scene = in_motion(side);
@@ -166,13 +168,19 @@ fn air(criterion: &mut Criterion) {
             ("a wind of each place", Some(breeze), true),
         ] {
             let mut solver = scene.solver(false);
-            solver.set_air(&scene.surface, air);
+            let forces = ForceInputs {
+                air,
+                ..ForceInputs::default()
+            };
+            solver.forces.set(&scene.surface, forces);
             group.bench_function(BenchmarkId::new(name, side), |bencher| {
                 bencher.iter_batched_ref(
                     || scene.particles.clone(),
                     |particles| {
                         if is_local {
-                            solver.set_local_wind(particles, |place| breeze.wind + place);
+                            solver
+                                .forces
+                                .set_local_wind(particles, |place| breeze.wind + place);
                         }
                         solver.advance(particles, scene.step(SUBSTEPS), &[], |_, _| false)
                     },

@@ -71,7 +71,7 @@ impl Smooth {
         });
         let longest = sheet.solver.longest_explicit_substep(&sheet.particles);
         if !by_forces {
-            sheet.solver.forget_forces();
+            sheet.solver.forget_soft_springs();
         } else if sheet.step.seconds / step.substeps as f32 > longest {
             return None;
         }

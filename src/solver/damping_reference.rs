@@ -15,7 +15,7 @@ pub(super) struct DampingReference {
     displacement: Vec3,
     /// Its gain in a sub-step by an acceleration of all particles (m).
     pull: Vec3,
-    /// The force of the air (N), and the gain by one newton on a kilogram (m).
+    /// The sum of forces (N), and the gain by one newton on a kilogram (m).
     force: Vec3,
     unit: f32,
     /// Mass of all that is free (kg).
@@ -58,8 +58,8 @@ impl DampingReference {
         [self.displacement, self.gained()]
     }
 
-    /// The air pushes the cloth by this force (N) from now on.
-    pub fn blow(&mut self, force: Vec3) {
+    /// Forces push the cloth by this sum (N) from now on.
+    pub fn set_force(&mut self, force: Vec3) {
         self.force = force;
     }
 

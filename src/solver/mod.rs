@@ -64,13 +64,13 @@
 //!
 //! [`needed`]: Substepping::needed
 
-mod air;
 mod bending;
 mod chains;
 mod damping_reference;
 mod energy;
 mod envelope;
-mod forces;
+#[doc(hidden)]
+pub mod forces;
 mod free_pieces;
 mod kernels;
 mod list;
@@ -79,6 +79,7 @@ mod partitions;
 mod rest;
 mod seam;
 mod settings;
+mod soft_springs;
 mod spin;
 mod spring_solver;
 mod step;
@@ -91,15 +92,12 @@ mod tether;
 mod torn_grid;
 
 #[doc(hidden)]
-pub use air::Air;
-pub use air::ClothPressure;
-pub(crate) use air::{AirMemory, FILLING};
-#[doc(hidden)]
 pub use bending::Bending;
 pub use bending::ClothCreasing;
 pub(crate) use bending::creases_of_torn;
 pub use envelope::ClothLimit;
 pub(crate) use envelope::LimitInputs;
+pub use forces::ClothPressure;
 pub(crate) use free_pieces::FreePieces;
 #[doc(hidden)]
 pub use kernels::SimdLevel;

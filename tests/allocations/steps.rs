@@ -9,8 +9,9 @@ use bevy_drape::{
     hierarchy::{BoundRule, BoundingVolume, NodeBounds, QuadTree, TopDownQuery},
     prelude::ClothCollider,
     solver::{
-        Air, Bending, ClothCreasing, Control, PinMotion, Solver, Stretch, Substepping, Tethers,
+        Bending, ClothCreasing, Control, PinMotion, Solver, Stretch, Substepping, Tethers,
         TickStep,
+        forces::{Air, ForceInputs},
     },
 };
 use stats_alloc::Region;
@@ -263,12 +264,18 @@ pub fn air_does_not_allocate() {
         let air = Air {
             density: 1.2,
             drag: 1.2,
-            ..Air::NONE
+            ..Air::default()
+        };
+        let forces = ForceInputs {
+            air: Some(air),
+            ..ForceInputs::default()
         };
         let mut ticks = |count: u32| {
             for _ in 0..count {
-                solver.set_air(&surface, Some(air));
-                solver.set_local_wind(&particles, |place| place + Vec3::Z);
+                solver.forces.set(&surface, forces);
+                solver
+                    .forces
+                    .set_local_wind(&particles, |place| place + Vec3::Z);
                 solver.advance(&mut particles, TickStep::default(), &[], |_, _| false);
             }
         };

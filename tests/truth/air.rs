@@ -5,7 +5,10 @@ use std::f64::consts::FRAC_PI_2;
 use bevy::math::{DVec3, Quat, Vec3};
 use bevy_drape::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface},
-    solver::{Air, Bending, Solver, TickStep},
+    solver::{
+        Bending, Solver, TickStep,
+        forces::{Air, ForceInputs},
+    },
 };
 use examples_shared::sheet::{GRAVITY, threads};
 
@@ -70,9 +73,12 @@ impl Scene {
             drag,
             lift,
             wind,
-            pressure: None,
         };
-        self.solver.set_air(&self.surface, Some(air));
+        let forces = ForceInputs {
+            air: Some(air),
+            ..ForceInputs::default()
+        };
+        self.solver.forces.set(&self.surface, forces);
     }
 
     fn tick(&mut self) {
@@ -237,11 +243,11 @@ fn what_the_air_gives_is_what_the_cloth_gains() {
         scene.blow(1.2, 1.5, Vec3::new(3.0, -1.0, 4.0));
         let before = scene.momentum();
         scene.tick();
-        let first = scene.solver.air_impulse().as_dvec3();
+        let first = scene.solver.forces.impulse().as_dvec3();
         let mut given = first;
         for _ in 1..32 {
             scene.tick();
-            given += scene.solver.air_impulse().as_dvec3();
+            given += scene.solver.forces.impulse().as_dvec3();
         }
         let gained = scene.momentum() - before;
         println!("grid {is_grid}, {compliance} m/N: given {given:.5}, gained {gained:.5} N s");
@@ -306,9 +312,12 @@ fn wave_period(substeps: u32) -> f64 {
         drag: 1.2,
         lift: 1.5,
         wind: Vec3::X * 8.0,
-        pressure: None,
     };
-    solver.set_air(&surface, Some(air));
+    let forces = ForceInputs {
+        air: Some(air),
+        ..ForceInputs::default()
+    };
+    solver.forces.set(&surface, forces);
     let step = TickStep {
         substeps,
         acceleration: Vec3::NEG_Y * GRAVITY as f32,

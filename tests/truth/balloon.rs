@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
-    solver::{Air, ClothPressure, Solver, TickStep},
+    solver::{ClothPressure, Solver, TickStep, forces::ForceInputs},
 };
 use examples_shared::sheet::threads;
 
@@ -89,14 +89,11 @@ fn a_mylar_balloon_has_its_shape() {
         let mut particles = ClothParticles::at_rest(&surface, &material).expect("a material");
         let springs = Springs::of_surface(&surface, &material);
         let mut solver = Solver::of_surface(&surface, &springs);
-        let pressure = Some(ClothPressure::Gauge(pascal));
-        solver.set_air(
-            &surface,
-            Some(Air {
-                pressure,
-                ..Air::NONE
-            }),
-        );
+        let forces = ForceInputs {
+            pressure: Some(ClothPressure::Gauge(pascal)),
+            ..ForceInputs::default()
+        };
+        solver.forces.set(&surface, forces);
         let step = TickStep {
             substeps,
             damping: material.damping,

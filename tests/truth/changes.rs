@@ -172,7 +172,7 @@ fn what_the_material_holds_comes_back() {
             row == 0
         });
         // So soft, it would be pushed by forces.
-        sheet.solver.forget_forces();
+        sheet.solver.forget_soft_springs();
         let mut heights = Vec::new();
         for tick in 0..90 {
             let is_late = heights.len() > 2 && heights[tick - 1] > heights[tick - 2];

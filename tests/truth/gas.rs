@@ -8,7 +8,7 @@ use bevy::{
 };
 use bevy_drape::{
     cloth::{ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
-    solver::{Air, ClothPressure, Solver, TickStep},
+    solver::{ClothPressure, Solver, TickStep, forces::ForceInputs},
 };
 use examples_shared::sheet::threads;
 
@@ -44,12 +44,11 @@ fn ball(radius: f32, divisions: u32, inwards: bool) -> Surface {
 /// What has `gas` in it.
 fn filled(surface: &Surface, springs: &Springs, gas: ClothPressure) -> Solver {
     let mut solver = Solver::of_surface(surface, springs);
-    let pressure = Some(gas);
-    let air = Air {
-        pressure,
-        ..Air::NONE
+    let forces = ForceInputs {
+        pressure: Some(gas),
+        ..ForceInputs::default()
     };
-    solver.set_air(surface, Some(air));
+    solver.forces.set(surface, forces);
     solver
 }
 
@@ -142,7 +141,7 @@ fn a_balloon_has_the_pressure_of_its_gas() {
         }
         let found = volume(&surface, &particles);
         let law = f64::from(outside) * (amount * whole / found - 1.0);
-        let (enclosed, pressure) = solver.enclosed();
+        let (enclosed, pressure) = solver.forces.enclosed();
         println!(
             "{amount} of its gas, {substeps} sub-steps: {:.4} of its volume, {pressure:.2} Pa, {law:.2} by the law",
             found / whole
@@ -195,7 +194,7 @@ fn what_is_crushed_fills_again() {
                 fastest = fastest.max(farthest / step.seconds);
             }
             let left = volume(&surface, &particles) / at_rest;
-            let (_, pressure) = solver.enclosed();
+            let (_, pressure) = solver.forces.enclosed();
             println!(
                 "{substeps} sub-steps, crushed to {crush}: {left:.5} of the volume, {pressure:.0} Pa, {fastest:.1} m/s at most"
             );

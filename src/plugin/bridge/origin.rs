@@ -124,7 +124,7 @@ fn shift(
             .first_target
             .map(|was| shift.rigid(was, carrier));
         state.lod.frozen = state.lod.frozen.map(|was| was.shifted(shift, carrier));
-        state.inputs.air.shift(shift, zone);
+        state.inputs.forces.shift(shift, zone);
         let rounding = 2.0 * shift.rounding(before.isometry().translation);
         let colliders = state.resting.colliders_mut();
         colliders.for_each(|on| on.add_slack(rounding));

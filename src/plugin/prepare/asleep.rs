@@ -7,7 +7,7 @@ use crate::{
     cloth::ClothParticles,
     plugin::{
         frame::{ClothFrame, global_transform},
-        state::{ClothBuilt, EffectiveWind, Inputs},
+        state::{ClothBuilt, GameForces, Inputs},
     },
 };
 
@@ -16,7 +16,7 @@ pub(super) fn sleeps_as_it_was(
     cloth: &PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    wind: &Option<EffectiveWind>,
+    forces: GameForces,
     seconds: f32,
 ) -> bool {
     let Surroundings {
@@ -54,12 +54,10 @@ pub(super) fn sleeps_as_it_was(
             pins,
         )
         && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
-        && (state.inputs.air).is_still(
-            wind.as_ref(),
-            cloth.game.pressure(built.surface()),
-            field,
-            || ball(built, &cloth.particles, state.stretch.bound, &cloth.frame),
-        )
+        && forces.on(built.surface()).is_ok_and(|forces| {
+            let ball = || ball(built, &cloth.particles, state.stretch.bound, &cloth.frame);
+            state.inputs.forces.is_still(forces, field, ball)
+        })
         && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 

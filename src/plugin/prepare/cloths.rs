@@ -30,7 +30,7 @@ use crate::{
         },
         frame::{ClothFrame, global_transform},
         naming::Part,
-        state::{ClothFault, EffectiveWind, Inputs, LodAction, Notices, SharedParts},
+        state::{ClothFault, GameForces, Inputs, LodAction, Notices, SharedParts},
     },
 };
 
@@ -68,14 +68,14 @@ pub(crate) fn prepare_cloths(
                 skip(&mut cloth);
                 return stand_still(&mut cloth, &around);
             }
-            let wind = around.field.of_cloth(cloth.game.air.0)?;
-            if sleeps_as_it_was(&cloth, &inputs, &around, &wind, seconds) {
+            let forces = GameForces::of(&cloth.game.forces, &around.field)?;
+            if sleeps_as_it_was(&cloth, &inputs, &around, forces, seconds) {
                 return Ok(());
             }
             // Forgets the work of an earlier tick.
             cloth.scratch.forget_tick();
             let seconds = (seconds, ticks);
-            prepare(&mut cloth, &inputs, &around, wind, &mut parts, seconds)?;
+            prepare(&mut cloth, &inputs, &around, forces, &mut parts, seconds)?;
             notice_new(&mut cloth, &inputs, &mut notices);
             Ok(())
         });
@@ -147,7 +147,7 @@ fn prepare(
     cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    wind: Option<EffectiveWind>,
+    forces: GameForces,
     parts: &mut SharedParts,
     (seconds, ticks): (f32, u32),
 ) -> Result<(), ClothError> {
@@ -155,6 +155,7 @@ fn prepare(
     let (frame, build) = build_cloth(cloth, inputs, around, parts)?;
     let has_stood = cloth.state.lod.frozen.is_some();
     let was_written = take_over(cloth, inputs, around, [&before, &frame], seconds)?;
+    let forces = forces.on(cloth.built.surface())?;
     let (is_known, fastest) = (
         cloth.state.is_valid && !has_stood,
         cloth.state.largest_speed,
@@ -182,7 +183,7 @@ fn prepare(
         &mut state.largest_gravity,
     );
     cloth.scratch.was_put = was_written || build != Build::Kept || cloth.scratch.teleports;
-    see_whether_it_rests(cloth, inputs, around, wind, acceleration, seconds);
+    see_whether_it_rests(cloth, inputs, around, forces, acceleration, seconds);
     prepare_step(cloth, inputs, around, acceleration, (seconds, ticks));
     prepare_contact(cloth, inputs, acceleration, seconds);
     clear_stats(&mut cloth.stats, cloth.state.rest.is_asleep());
@@ -264,9 +265,6 @@ fn take_over(
     let surface = cloth.built.surface();
     if let Some(self_collision) = &inputs.self_collision {
         self_collision.validate(surface)?;
-    }
-    if let Some(pressure) = cloth.game.pressure(surface) {
-        pressure.validate(surface)?;
     }
     Ok(was_written)
 }

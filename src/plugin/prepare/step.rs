@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     contact::ContactSettings,
-    plugin::state::{ClothBuilt, ClothState, EffectiveWind, Inputs, RestsOn},
+    plugin::state::{ClothBuilt, ClothState, GameForces, Inputs, RestsOn},
     solver::{RestRule, Substepping, TickStep},
 };
 
@@ -19,7 +19,7 @@ pub(super) fn see_whether_it_rests(
     cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    wind: Option<EffectiveWind>,
+    forces: GameForces,
     acceleration: Vec3,
     seconds: f32,
 ) {
@@ -34,13 +34,9 @@ pub(super) fn see_whether_it_rests(
         RestRule::Free
     };
     let known = Some(*inputs);
-    let (field, pressure) = (&*around.field, cloth.game.pressure(cloth.built.surface()));
     let ball = || ball(built, particles, state.stretch.bound, &cloth.frame);
-    let is_still = state
-        .inputs
-        .air
-        .is_still(wind.as_ref(), pressure, field, ball);
-    state.inputs.air.renew(wind, pressure.copied(), field, ball);
+    let is_still = state.inputs.forces.is_still(forces, &around.field, ball);
+    state.inputs.forces.renew(forces, &around.field, ball);
     if state.inputs.known != known || !is_still || !settings.sleeps {
         state.inputs.known = known;
         state.wake();
@@ -73,8 +69,8 @@ pub(super) fn prepare_step(
     let surface = built.surface().clone();
     follow_creases(built, state, inputs);
     if !state.rest.is_asleep() {
-        let (surface, field) = (&*surface, &*around.field);
-        (state.inputs.air).set(&mut built.solver, surface, particles, &cloth.frame, field);
+        let (forces, field) = (&mut built.solver.forces, &*around.field);
+        (state.inputs.forces).set(forces, &surface, particles, &cloth.frame, field);
     }
     let along = surface.particles_along();
     // A move for several ticks takes the sub-steps of one: that saves the time.
@@ -158,8 +154,8 @@ pub(super) fn prepare_contact(
     };
     let least = (built.from.as_ref()).map_or(1.0, |from| from.factors.density.least);
     let lightest = material.areal_density * least;
-    let by_air = (state.inputs.air).acceleration(lightest, state.largest_speed, seconds);
-    let acceleration = acceleration.length() + by_air;
+    let by_forces = (state.inputs.forces).acceleration(lightest, state.largest_speed, seconds);
+    let acceleration = acceleration.length() + by_forces;
     let pins = &scratch.pins;
     scratch.reach =
         reach(state, built.surface(), pins, acceleration, seconds) + scratch.constraints.travel();

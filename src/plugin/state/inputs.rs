@@ -8,6 +8,7 @@ use bevy::{
     math::Vec3,
 };
 
+use super::forces::ForceQuery;
 use crate::{
     cloth::{
         Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothSkin,
@@ -15,8 +16,8 @@ use crate::{
     },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
-    plugin::authoring::{ClothAir, ClothAttachments, ClothLod, ClothTeleport},
-    solver::{ClothCreasing, ClothPressure, ClothSettings},
+    plugin::authoring::{ClothAttachments, ClothLod, ClothTeleport},
+    solver::{ClothCreasing, ClothSettings},
 };
 
 /// The components of a cloth that the game writes.
@@ -37,7 +38,7 @@ pub(crate) struct GameQuery {
     pub method: Option<&'static SearchMethod>,
     pub narrow_phase: Option<&'static NarrowPhase>,
     pub self_collision: Option<&'static ClothSelfCollision>,
-    pub air: (Option<&'static ClothAir>, Option<&'static ClothPressure>),
+    pub forces: ForceQuery,
     pub creasing: Option<&'static ClothCreasing>,
     pub lod: Option<&'static ClothLod>,
     pub teleport: Option<&'static ClothTeleport>,
@@ -50,12 +51,6 @@ impl GameQueryItem<'_, '_> {
     /// When the map of its material was last changed, if it has one.
     pub fn mapped(&self) -> Option<Tick> {
         self.map.as_ref().map(DetectChanges::last_changed)
-    }
-
-    /// Its pressure. A closed surface that is torn open has burst.
-    pub fn pressure(&self, surface: &Surface) -> Option<&ClothPressure> {
-        let (_, pressure) = self.air;
-        pressure.filter(|_| surface.is_closed() || !surface.was_closed())
     }
 
     /// The tears and when they were last changed, if it has any.
@@ -83,7 +78,7 @@ impl GameQueryItem<'_, '_> {
 }
 
 /// The game's settings of a cloth in a tick, checked. Removed components count as their defaults. A cloth at rest wakes when one
-/// of these values changes. Its particles, its place, the air and what it is built from are compared elsewhere.
+/// of these values changes. Its particles, its place, forces and what it is built from are compared elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Inputs {

@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use super::{
-    air::AirState, excess::Excess, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose,
+    excess::Excess, forces::ForceState, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose,
 };
 use crate::{
     cloth::ClothParticles,
@@ -105,7 +105,7 @@ pub(crate) struct InputMemory {
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub written: Option<Tick>,
     pub known: Option<Inputs>,
-    pub air: AirState,
+    pub forces: ForceState,
     /// How many of its torn edges have opened: the last ones do so as the next tick begins.
     pub opened: usize,
     /// Whether it was a grid that has the surface of a mesh, though nothing was torn.
@@ -116,7 +116,7 @@ impl InputMemory {
     fn copy_from(&mut self, other: &Self) {
         (self.written, self.known) = (other.written, other.known);
         (self.opened, self.as_mesh) = (other.opened, other.as_mesh);
-        self.air.clone_from(&other.air);
+        self.forces.clone_from(&other.forces);
     }
 }
 
@@ -210,6 +210,6 @@ impl MapEntities for ClothState {
         for known in self.resting.colliders_mut() {
             known.map_entities(mapper);
         }
-        self.inputs.air.map_entities(mapper);
+        self.inputs.forces.map_entities(mapper);
     }
 }

@@ -3,12 +3,12 @@
 //! [`ClothState`] is the memory from tick to tick, [`ClothBuilt`] is built from the game's components, [`ClothScratch`]
 //! is handed from stage to stage within a tick. Stages write them; nothing here is a system, except for the log of notices.
 
-mod air;
 mod async_build;
 mod built;
 mod contacts;
 mod excess;
 mod fault;
+mod forces;
 mod inputs;
 mod lod;
 mod memory;
@@ -31,6 +31,7 @@ pub use built::ClothBuilt;
 pub(crate) use built::{BuiltFrom, FailedBuild};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use fault::ClothFault;
+pub(crate) use forces::GameForces;
 pub(crate) use inputs::{GameQuery, Inputs};
 pub(crate) use lod::{Frozen, LodAction};
 pub use memory::ClothState;
@@ -46,4 +47,4 @@ pub(crate) use shared::{Shared, Stiffnesses};
 pub(crate) use shared_parts::SharedParts;
 pub(crate) use source::Source;
 pub use stats::ClothStats;
-pub(crate) use wind_field::{EffectiveWind, WindField};
+pub(crate) use wind_field::WindField;

@@ -13,6 +13,7 @@ use crate::{
         authoring::{ClothAir, ClothWind, DENSITY, PlacedZone},
         frame::Shift,
     },
+    solver::forces::Air,
 };
 
 /// Far apart in the noise, so that its values along the three axes are independent.
@@ -53,11 +54,7 @@ struct World {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct EffectiveWind {
-    pub density: f32,
-    pub drag: f32,
-    pub lift: f32,
-    /// Velocity (m/s).
-    pub velocity: Vec3,
+    pub air: Air,
     /// See [`World`].
     pub deviation: f32,
     /// Whether there is air where no zone is.
@@ -152,10 +149,12 @@ impl WindField {
         };
         Ok(Some(EffectiveWind {
             is_everywhere: world.is_some() || own.is_some_and(|own| own.velocity.is_some()),
-            density,
-            drag,
-            lift,
-            velocity,
+            air: Air {
+                density,
+                drag,
+                lift,
+                wind: velocity,
+            },
             deviation,
         }))
     }

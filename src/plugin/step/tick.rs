@@ -74,9 +74,10 @@ impl IntegrateQueryItem<'_, '_> {
         );
         self.stats.requeries = self.scratch.detection.requeries();
         self.stats.stretch = self.state.stretch;
-        self.stats.air_impulse = rotation * self.built.solver.air_impulse();
-        (self.stats.enclosed_volume, self.stats.gauge_pressure) = self.built.solver.enclosed();
-        self.state.inputs.air.memory = self.built.solver.air_memory();
+        let forces = &self.built.solver.forces;
+        self.stats.air_impulse = rotation * forces.impulse();
+        (self.stats.enclosed_volume, self.stats.gauge_pressure) = forces.enclosed();
+        self.state.inputs.forces.memory = forces.memory;
         self.state.remember_creases(self.built.solver.creases());
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
@@ -137,8 +138,7 @@ impl IntegrateQueryItem<'_, '_> {
     pub(crate) fn restart(&mut self) {
         self.particles.copy_from(&self.scratch.backup);
         self.scratch.detection.restart();
-        let air = self.state.inputs.air.memory;
-        self.built.solver.set_air_memory(air);
+        self.built.solver.forces.memory = self.state.inputs.forces.memory;
         self.built.solver.recall_creases(&self.state.creases);
     }
 

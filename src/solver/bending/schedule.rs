@@ -28,7 +28,7 @@ impl BendingSchedule {
         self.stride = 1;
     }
 
-    /// The same in a tick of forces, whose first and last kicks are for half a sub-step: as the kick, where it bends in each.
+    /// The same in a tick of explicit springs, whose first and last kicks are for half a sub-step: as the kick, where it bends in each.
     pub fn for_kick(&mut self, index: u32, count: u32) -> f32 {
         match (self.is_strided, index) {
             (true, index) if index == count => 0.0,
@@ -56,7 +56,7 @@ impl BendingSchedule {
 mod tests {
     use super::*;
 
-    /// A tick of forces bends for all of its sub-steps, too.
+    /// A tick of explicit springs bends for all of its sub-steps, too.
     #[test]
     fn forces_bend_for_each_sub_step() {
         for stride in 1..=MOST_AT_ONCE {

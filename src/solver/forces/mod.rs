@@ -1,338 +1,183 @@
-//! Soft springs, explicitly: by forces and Verlet, as in the paper.
+//! Forces of a game on the particles of a cloth, besides gravity.
 //!
-//! If a sub-step is short beside the fastest oscillation of a cloth, nothing has to be solved. The forces of the
-//! springs accelerate each particle, and velocity Verlet moves it:
+//! [`Forces`] alone knows all of them; what calls it names none. Each is a file here, and a field of [`ForceInputs`]. After
+//! the air it adds to [`LinearForce::push`] of all particles but pins. Chains and soft springs, grids and meshes, one
+//! thread and many apply the sum. Its impulse and the motion of the centre of mass follow from it.
 //!
-//! ```text
-//!   v += a Δt/2,   x += v Δt,   v += a Δt/2         a = g + w Σ k (1 − L/ℓ) (x_j − x_i)
-//! ```
-//!
-//! This is of second order. It is symplectic, so it keeps momentum to the last bits, and energy for ever but for a
-//! ripple. The end of one sub-step and the beginning of the next are a single kick. Only the first and the last kick of
-//! a tick are halves, so that a tick ends with positions and velocities of the same instant.
-//!
-//! # The limit
-//! It is stable as long as ω Δt < 2 for all modes. However a cloth is folded or stretched, a spring's tangent stiffness
-//! is at most k in any direction. Each of its two particles takes at most the double, so no ω² is more than `2 max_i
-//! w_i Σ_j k_ij`. That is twice the value of a flat lattice; it holds for a crumpled one, where springs lie side by
-//! side.
-//!
-//! A cloth must not be too far from the origin of its frame either. At a distance of r m, each step rounds positions by
-//! u = 2⁻²³ r ⁄ √12 in the mean, and forces from positions alone take each rounding for a stretch. With 4 springs per
-//! particle, these gain ½ k u² twice in a step, which is `ω² m u²/(4 Δt)` a second. It is limited to 2 % of the work of
-//! the weight over a spacing h: u² < 0.08 g h Δt/ω². That is 6 m for 64² of 1 mm/N, 2 m wide. (Chains use
-//! displacements as well, and may be 150 times as far away.)
-//!
-//! # Cost
-//! 9 µs for a sub-step of 64² (16,000 springs), where solving chains takes 24. So if it needs at most twice the
-//! sub-steps, it is as cheap, and far more exact. An example is a 64² of 1 mm/N that falls, hung by its upper row.
-//! After half a second it is off by 0.01 mm with 92 sub-steps in 1/60 s; chains with 80 are off by 0.05 mm.
+//! **Steps.** Forces are evaluated a few times per tick ([`LONGEST`]), whatever the sub-steps. In between, each sub-step
+//! follows the sum along its slope over the particle's velocity. A force that changes much within 10 ms, as a stiff one
+//! does, is evaluated in each sub-step.
 
-mod list;
-#[cfg(test)]
-mod tests;
+mod air;
 
-use std::array;
+use bevy::math::{DVec3, Vec3};
 
-use super::{
-    bending::Bending,
-    damping_reference::DampingReference,
-    free_pieces::FreePieces,
-    kernels::{ElasticGrid, Force, Kernels, Kick, LinearizedDrag},
-    partitions::{MAX_PARTITIONS, in_partitions, take},
-    step::{DAMPING_REFERENCE, PinMotion, SubStep, TickStep, existing},
-};
-use crate::cloth::{
-    Block, ClothGrid, ClothParticles, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z,
-};
-use list::ForceList;
+pub use self::air::{Air, ClothPressure};
+use super::kernels::{Kernels, LinearForce};
+use crate::cloth::{Block, ClothParticles, LANES, Lanes, Layout, MapInline, Surface};
+use air::{Airflow, Gas};
 
-/// Of the largest stable sub-step. The rest is for bending, which pushes with them.
-const MARGIN: f32 = 0.95;
+/// Forces are evaluated again after this time (s) at the latest: twice in a tick of 1/64 s. A flag of 1.4 × 0.9 m in
+/// 8 m/s then waves 4.7 times a second (80 sub-steps, 200 s). It waves 5.0 times with four evaluations, and 5.15 times
+/// with 80; four cost 13 % of a tick instead of 4 (64²).
+const LONGEST: f32 = 0.01;
 
-/// Mean rounding of a number, as a fraction of it: 2⁻²³ ⁄ √12.
-const ROUNDING: f32 = f32::EPSILON * 0.288_675;
+/// Larger impulses (N s) on a row of a grid, or on a mesh, are not counted: they belong to no game, and `f32` may not hold them.
+const LARGEST_IMPULSE: f64 = 1.0e25;
 
-/// Four times the fraction of the work of the weight over a spacing that rounding may add in a second.
-const NOISE: f32 = 0.08;
+/// An impulse (N s), or none if it is NaN or too large.
+fn counted(given: DVec3) -> DVec3 {
+    match given.abs().max_element() < LARGEST_IMPULSE {
+        true => given,
+        false => DVec3::ZERO,
+    }
+}
 
-/// Gravity of this estimate (m/s²), whatever the cloth's own.
-const GRAVITY: f32 = 9.81;
+/// The forces on a cloth in a tick, in the cloth's frame.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct ForceInputs {
+    /// The air around it, with a uniform wind.
+    pub air: Option<Air>,
+    /// The air inside a closed mesh.
+    pub pressure: Option<ClothPressure>,
+}
 
-/// Fewer rows a partition than this, and waiting for the others would take longer than the work.
-const MIN_ROWS: usize = 32;
+/// The effect of all forces on the particles of a surface.
+#[derive(Debug, Default, Clone)]
+pub struct Forces {
+    inputs: ForceInputs,
+    layout: Layout,
+    airflow: Option<Airflow>,
+    /// Empty without forces.
+    linearized: Vec<LinearForce>,
+    /// As the forces were evaluated, see [`LinearForce`].
+    places: Vec<Lanes>,
+    /// Sub-steps between two evaluations, and since the last.
+    stride: u32,
+    /// Sub-steps between two looks at the wind.
+    wind_stride: u32,
+    since: u32,
+    substep: f32,
+    /// Impulse that they gave the cloth in the tick (N s).
+    impulse: DVec3,
+    pub(crate) memory: ForceMemory,
+}
 
-/// The springs of a grid, torn or not, none of them rigid.
-#[derive(Debug, Clone)]
-pub(super) struct Forces {
-    springs: ElasticGrid,
-    /// Of the particles that tears made.
-    list: ForceList,
-    /// Of all springs of a particle together (N/m): in a row at an end and in others, or in each row.
-    sums: [Vec<Lanes>; 2],
-    /// Of two rows, for each partition.
-    scratch: Vec<[Vec<Force>; 2]>,
-    /// The rows on either side of each border between partitions.
-    borders: Vec<Block>,
-    partitions: usize,
+/// Memory of forces for the next tick.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct ForceMemory {
+    /// Their mean sum between the last two evaluations (N), in the cloth's frame.
+    pub force: Vec3,
+    gas: Gas,
 }
 
 impl Forces {
-    /// `None` if a spring is rigid.
-    pub fn new(grid: &ClothGrid, compliances: &Compliances) -> Option<Self> {
-        let springs = ElasticGrid::new(grid, compliances)?;
-        let strip = springs.layout.strip as usize;
-        Some(Self {
-            sums: sums(&springs),
-            list: ForceList::default(),
-            springs,
-            scratch: vec![array::from_fn(|_| vec![Force::default(); strip])],
-            borders: Vec::new(),
-            partitions: 1,
-        })
-    }
-
-    /// Of the springs of a torn or mapped grid, between particles that lie as `layout` says. `None` if one is rigid.
-    pub fn of_list(grid: &ClothGrid, layout: Layout, list: &SpringList) -> Option<Self> {
-        let springs = ElasticGrid::of_list(grid, layout, list)?;
-        let strip = layout.strip as usize;
-        let mut sums = vec![[0.0; LANES]; layout.blocks()];
-        for spring in &list.springs {
-            for end in spring.ends {
-                let slot = layout.slot_of(end as usize);
-                sums[slot.block][slot.lane] += 1.0 / spring.compliance;
-            }
+    /// Sets the forces on the surface that the solver was made for, with a uniform wind. Without any, a tick costs no more.
+    pub fn set(&mut self, surface: &Surface, inputs: ForceInputs) {
+        if inputs == ForceInputs::default() {
+            *self = Self::default();
+            return;
         }
-        Some(Self {
-            springs,
-            list: ForceList::new(list, grid.len() as u32, layout)?,
-            sums: [sums, Vec::new()],
-            scratch: vec![array::from_fn(|_| vec![Force::default(); strip])],
-            borders: Vec::new(),
-            partitions: 1,
-        })
+        self.inputs = inputs;
+        self.layout = surface.layout();
+        self.airflow = Airflow::of(inputs.air, inputs.pressure, self.airflow.take(), surface);
+        let blocks = surface.layout().blocks();
+        self.linearized.resize(blocks, LinearForce::NONE);
+        self.places.resize(blocks, [0.0; LANES]);
     }
 
-    /// The stiffness of all springs of the particles of a row together (N/m).
-    fn sums_of(&self, row: usize) -> &[Lanes] {
-        let Layout { rows, strip, .. } = self.springs.layout;
-        let [border, inner] = &self.sums;
-        if self.springs.is_by_row() {
-            return &border[row * strip as usize..][..strip as usize];
-        }
-        let is_end = row == 0 || row + 1 == rows as usize;
-        if is_end { border } else { inner }
-    }
-
-    /// With this many partitions of rows from now on, or fewer where there is too little to do.
-    pub fn set_partitions(&mut self, wanted: usize) {
-        let most = self.springs.layout.rows as usize / MIN_ROWS;
-        self.partitions = wanted.min(most).clamp(1, MAX_PARTITIONS);
-    }
-
-    /// How many partitions there are.
-    pub fn partitions(&self) -> usize {
-        self.partitions
-    }
-
-    /// The longest sub-step that is safe for particles of these masses, there (s); 0 if they are too far away for any.
-    pub fn longest_substep(&self, blocks: &[Block]) -> f32 {
-        let (mut largest, mut farthest) = ([0.0_f32; LANES], [0.0_f32; LANES]);
-        let each = blocks.chunks_exact(self.springs.layout.strip as usize);
-        for (row, blocks) in each.enumerate() {
-            for (block, sum) in blocks.iter().zip(self.sums_of(row)) {
-                let view = block.view();
-                for l in 0..LANES {
-                    let own = view[W + l] * sum[l];
-                    largest[l] = if own > largest[l] { own } else { largest[l] };
-                    for at in [X, Y, Z] {
-                        let away = view[at + l].abs();
-                        farthest[l] = if away > farthest[l] {
-                            away
-                        } else {
-                            farthest[l]
-                        };
-                    }
-                }
-            }
-        }
-        let greatest = |of: [f32; LANES]| of.into_iter().fold(0.0, f32::max);
-        let square = 2.0 * greatest(largest);
-        let longest = MARGIN * 2.0 / square.sqrt();
-        let rounding = ROUNDING * greatest(farthest);
-        let most = NOISE * GRAVITY * self.springs.spacing() * longest / square;
-        if rounding * rounding < most {
-            longest
-        } else {
-            0.0
+    /// Sets a wind that depends on the position, in place of [`Air::wind`], until forces are set again. `at` takes a
+    /// position (m) to the velocity of the air (m/s), both in the cloth's frame. It is called at some 80 positions
+    /// around the current particles, and interpolated between them. These are nine in each direction of a grid, or a
+    /// lattice of up to 5 × 5 × 5 around a mesh. Without air it is not called.
+    pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
+        if let Some(airflow) = &mut self.airflow {
+            airflow.set_local_wind(particles, at);
         }
     }
 
-    /// A sub-step of particles that remember nothing but their velocity: forces alone, what bends, and air. The one after the last
-    /// only ends the tick, and is none. It bends for that many sub-steps.
-    pub fn substep(
+    pub(super) fn are_none(&self) -> bool {
+        self.linearized.is_empty()
+    }
+
+    /// Impulse that they gave the cloth in the last tick, in the cloth's frame (N s).
+    pub fn impulse(&self) -> Vec3 {
+        self.impulse.as_vec3()
+    }
+
+    /// The volume that a closed mesh under pressure encloses (m³), and its gauge pressure (Pa), as of the last sub-step.
+    pub fn enclosed(&self) -> (f32, f32) {
+        let airflow = self.airflow.as_ref();
+        airflow.map_or((0.0, 0.0), |airflow| airflow.enclosed(&self.memory.gas))
+    }
+
+    /// Begins a tick of `seconds` in this many sub-steps.
+    pub(super) fn begin(&mut self, seconds: f32, substeps: u32) {
+        let looks = ((seconds / LONGEST).ceil() as u32).clamp(1, substeps);
+        self.wind_stride = substeps.div_ceil(looks);
+        // The size of an inflated cloth follows from its pressure and its springs in each sub-step.
+        let is_stiff = self.inputs.pressure.is_some();
+        self.stride = if is_stiff { 1 } else { self.wind_stride };
+        self.substep = seconds / substeps as f32;
+        self.since = 0;
+        self.impulse = DVec3::ZERO;
+    }
+
+    /// Before a sub-step: evaluates the forces if it is time.
+    pub(super) fn before_substep(
         &mut self,
-        particles: &mut ClothParticles,
-        step: &TickStep,
         index: u32,
-        damping_reference: &mut DampingReference,
-        pins: &[PinMotion],
-        bending: Option<(&mut Bending, f32)>,
-        linearized: Option<&[LinearizedDrag]>,
-        free_pieces: &mut FreePieces,
+        particles: &ClothParticles,
         kernels: &Kernels,
-    ) -> Option<SubStep> {
-        let count = step.substeps.max(1);
-        let dt = step.seconds / count as f32;
-        let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
-        // The end of one sub-step is the beginning of the next.
-        let (part, kept) = match index == 0 || index == count {
-            true => (0.5, kept.sqrt()),
-            false => (1.0, kept),
-        };
-        let weight = part * dt * dt;
-        let [displacement, _] = damping_reference.follow(particles.blocks());
-        damping_reference.gain(part);
-        let kick = Kick {
-            kept,
-            weight,
-            pull: (step.acceleration * weight + (1.0 - kept) * displacement).to_array(),
-            moves: index < count,
-        };
-        let mut substep = SubStep {
-            index,
-            count,
-            farthest_move: 0.0,
-        };
-        if kick.moves {
-            for pin in existing(pins, particles.len()) {
-                let target = pin.from.lerp(pin.to, substep.end());
-                particles.set_pin_target(pin.particle as usize, target);
+    ) {
+        if self.are_none() {
+            return;
+        }
+        if index.is_multiple_of(self.stride) {
+            self.settle(particles, kernels);
+            let (linearized, places) = (&mut self.linearized[..], &mut self.places[..]);
+            if let Some(airflow) = &mut self.airflow {
+                let stepped = (self.substep, index.is_multiple_of(self.wind_stride));
+                airflow.evaluate(particles, kernels, stepped, linearized, places);
+            } else {
+                linearized.fill(LinearForce::NONE);
+                places.fill([0.0; LANES]);
             }
         }
-        let blocks = particles.blocks_mut();
-        free_pieces.measure(blocks, step.damping);
-        let lost = (1.0 - kept) / kept;
-        free_pieces.shift(blocks, |own| lost * (own - displacement));
-        // Before the kick, which keeps a part of it.
-        self.list.push(blocks, weight / kept);
-        if let Some((bending, bends_for)) = bending
-            && bends_for > 0.0
-        {
-            bending.push(blocks, bends_for * dt * dt / kept, kernels);
-        }
-        if let Some(linearized) = linearized {
-            (kernels.air_push)(blocks, linearized, weight / kept, 1.0 / dt);
-        }
-        let moved = self.kick(blocks, &kick, kernels);
-        substep.farthest_move = moved.into_iter().fold(0.0, f32::max).sqrt();
-        kick.moves.then_some(substep)
+        self.since += 1;
     }
 
-    /// Whether each particle is heavy enough for a sub-step of `dt` (s). Ends with the first that is not.
-    pub fn is_short(&self, blocks: &[Block], dt: f32) -> bool {
-        let most = (MARGIN * 2.0 / dt).powi(2) / 2.0;
-        let mut each = blocks
-            .chunks_exact(self.springs.layout.strip as usize)
-            .enumerate();
-        each.all(|(row, blocks)| {
-            let own = |(block, sum): (&Block, &Lanes)| {
-                let view = block.view();
-                (0..LANES).all(|l| view[W + l] * sum[l] <= most)
-            };
-            blocks.iter().zip(self.sums_of(row)).all(own)
-        })
+    /// Adds the impulse since the last evaluation.
+    pub(super) fn settle(&mut self, particles: &ClothParticles, kernels: &Kernels) {
+        if self.since == 0 {
+            return;
+        }
+        let strip = self.layout.strip as usize;
+        let seconds = self.since as f32 * self.substep;
+        let rows = particles.blocks().chunks(strip);
+        let known = self.linearized.chunks(strip).zip(self.places.chunks(strip));
+        let before = self.impulse;
+        for (row, (linearized, places)) in rows.zip(known) {
+            let mut sum = [[0.0; LANES]; 3];
+            (kernels.force_impulse)(row, linearized, places, seconds, &mut sum);
+            let given = DVec3::from(sum.map_inline(|lanes| lanes.into_iter().map(f64::from).sum()));
+            self.impulse += counted(given);
+        }
+        self.memory.force = (self.impulse - before).as_vec3() / seconds;
+        self.since = 0;
     }
 
-    /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.
-    fn kick(&mut self, blocks: &mut [Block], kick: &Kick, kernels: &Kernels) -> Lanes {
-        let mut moved = [[0.0; LANES]; MAX_PARTITIONS];
-        let Self {
-            springs,
-            scratch,
-            borders,
-            partitions,
-            ..
-        } = self;
-        let partitions = *partitions;
-        if partitions == 1 {
-            let around: [&[Block]; 2] = [&[], &[]];
-            (kernels.kick)(
-                blocks,
-                0,
-                around,
-                springs,
-                kick,
-                &mut scratch[0],
-                &mut moved[0],
-            );
-            return moved[0];
-        }
-        let (rows, strip) = (springs.layout.rows as usize, springs.layout.strip as usize);
-        if scratch.len() < partitions {
-            scratch.resize(partitions, scratch[0].clone());
-        }
-        // Another partition moves these rows in the meantime, so a copy is read.
-        borders.clear();
-        let first_row = |partition: usize| rows * partition / partitions;
-        for partition in 1..partitions {
-            let at = first_row(partition) * strip;
-            borders.extend_from_slice(&blocks[at - strip..at + strip]);
-        }
-        let borders = &*borders;
-        let mut rest = blocks;
-        let each = scratch
-            .iter_mut()
-            .zip(&mut moved)
-            .take(partitions)
-            .enumerate();
-        let parts = each.map(|(partition, (scratch, moved))| {
-            let own = take(
-                &mut rest,
-                (first_row(partition + 1) - first_row(partition)) * strip,
-            );
-            // Of each border, the row above it and the row below it.
-            let row = |at: usize| borders.get(at * strip..(at + 1) * strip).unwrap_or(&[]);
-            let above: &[Block] = partition
-                .checked_sub(1)
-                .map_or(&[], |border| row(2 * border));
-            let around = [above, row(2 * partition + 1)];
-            (own, first_row(partition), around, scratch, moved)
-        });
-        in_partitions(parts, |(own, first, around, scratch, moved)| {
-            (kernels.kick)(own, first, around, springs, kick, scratch, moved);
-        });
-        array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))
+    /// Their action on each particle.
+    pub(super) fn linearized(&self) -> Option<&[LinearForce]> {
+        (!self.are_none()).then_some(&self.linearized)
     }
-}
 
-/// The stiffness of all springs of each particle of a row, at an end of the grid and elsewhere (N/m).
-fn sums(springs: &ElasticGrid) -> [Vec<Lanes>; 2] {
-    let layout = springs.layout;
-    let of = |is_inside: bool| {
-        let stiffness = |of: &[Lanes], column: u32| {
-            let slot = layout.slot(0, column);
-            of[slot.block][slot.lane]
-        };
-        // A spring's own column, and the one that it leads to.
-        let ends = |of: &[Lanes], column: u32| {
-            stiffness(of, column)
-                + column
-                    .checked_sub(1)
-                    .map_or(0.0, |from| stiffness(of, from))
-        };
-        let times = if is_inside { 2.0 } else { 1.0 };
-        let sum = |column: u32| {
-            let strip = layout.strip as usize;
-            let across = &springs.across[usize::from(is_inside)];
-            let across = ends(across.of_row(0, strip), column);
-            let down = times * stiffness(springs.down.of_row(0, strip), column);
-            let diagonal = times * ends(springs.falling.of_row(0, strip), column);
-            across + down + diagonal
-        };
-        let lane = |block, lane| layout.column(block, lane).map_or(0.0, sum);
-        let lanes = |block| array::from_fn(|l| lane(block, l));
-        (0..layout.strip as usize).map(lanes).collect()
-    };
-    [of(false), of(true)]
+    /// Adds what depends on the end of a sub-step to its predicted displacements, with this weight (s²).
+    pub(super) fn press(&mut self, blocks: &mut [Block], weight: f32) {
+        if let Some(airflow) = &mut self.airflow {
+            let gas = &mut self.memory.gas;
+            self.impulse += counted(airflow.press(gas, blocks, weight, self.substep));
+        }
+    }
 }

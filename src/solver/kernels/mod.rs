@@ -6,13 +6,13 @@
 //!
 //! A kernel imports no caller. [`Kernels`] is the table of all of them, compiled for one instruction set.
 
-mod air;
 mod air_areas;
 mod barrier;
 mod chains;
 mod commit;
 mod each;
 mod elastic;
+mod forces;
 mod packet;
 mod pentadiagonal;
 mod plate;
@@ -25,7 +25,6 @@ use multiversion::{inherit_target, multiversion};
 
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, Lanes, View, X, Y, Z};
 
-pub(crate) use air::{AeroCoefficients, LinearizedDrag, air_impulse, air_linearize, air_push};
 pub(crate) use air_areas::{Enclosed, Rows, Triangles, air_areas, between};
 use barrier::one_block_at_a_time;
 pub(crate) use chains::{
@@ -40,6 +39,7 @@ pub(crate) use commit::MIN_MOVE;
 pub(crate) use commit::commit;
 pub(crate) use each::four;
 pub(crate) use elastic::{ElasticGrid, Force, Kick, kick, share};
+pub(crate) use forces::{AeroCoefficients, LinearForce, air_linearize, force_impulse, force_push};
 pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets_back, relax_packets_there, turned};
 pub(crate) use pentadiagonal::{
     Factor, Vec3Lanes, chain_backward, chain_columns, chain_finish, chain_forward, chain_links,
@@ -47,8 +47,8 @@ pub(crate) use pentadiagonal::{
 };
 pub(crate) use plate::{EDGE, Moments, Stiffness, plate_moments, plate_places, plate_push};
 pub(crate) use predict::{
-    AirStep, Prediction, begin_past, predict, predict_first, predict_first_in_air, predict_in_air,
-    weight,
+    ForceStep, Prediction, begin_past, predict, predict_first, predict_first_forced,
+    predict_forced, weight,
 };
 pub(crate) use step_scale::{StepScale, Stiffer};
 pub(crate) use twist::{twist_backward, twist_forward, twist_links};
@@ -211,13 +211,13 @@ macro_rules! kernels {
 kernels! {
     predict_first(row: &mut [Block], prediction: &Prediction),
     predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction),
-    predict_first_in_air(row: &mut [Block], linearized: &[LinearizedDrag], prediction: &Prediction, air_step: &AirStep),
-    predict_in_air(row: &mut [Block], past: &mut [Earlier], linearized: &[LinearizedDrag], prediction: &Prediction, air_step: &AirStep),
+    predict_first_forced(row: &mut [Block], linearized: &[LinearForce], prediction: &Prediction, force_step: &ForceStep),
+    predict_forced(row: &mut [Block], past: &mut [Earlier], linearized: &[LinearForce], prediction: &Prediction, force_step: &ForceStep),
     begin_past(row: &[Block], past: &mut [Earlier]),
     air_areas(rows: &Rows, areas: &mut [Vec3Lanes]),
-    air_linearize(blocks: &[Block], areas: &[Vec3Lanes], winds: &[Vec3Lanes], coefficients: &AeroCoefficients, linearized: &mut [LinearizedDrag], places: &mut [Lanes]),
-    air_impulse(blocks: &[Block], linearized: &[LinearizedDrag], places: &[Lanes], seconds: f32, sum: &mut Vec3Lanes),
-    air_push(row: &mut [Block], linearized: &[LinearizedDrag], weight: f32, inverse_substep: f32),
+    air_linearize(blocks: &[Block], areas: &[Vec3Lanes], winds: &[Vec3Lanes], coefficients: &AeroCoefficients, linearized: &mut [LinearForce], places: &mut [Lanes]),
+    force_impulse(blocks: &[Block], linearized: &[LinearForce], places: &[Lanes], seconds: f32, sum: &mut Vec3Lanes),
+    force_push(row: &mut [Block], linearized: &[LinearForce], weight: f32, inverse_substep: f32),
     solve_chains(chains: &mut Chains, springs: &SpringBand),
     solve_damped_chains(chains: &mut Chains, springs: &SpringBand),
     solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2]),

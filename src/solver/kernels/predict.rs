@@ -15,8 +15,8 @@
 use bevy::math::Vec3;
 
 use super::{
-    air::{LinearizedDrag, acceleration},
     barrier::one_block_at_a_time,
+    forces::{LinearForce, acceleration},
 };
 use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
@@ -130,29 +130,29 @@ pub(crate) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Pred
     }
 }
 
-/// Parameters of the air in a sub-step: its weight (s²), and one over its length (1/s).
+/// Parameters of forces in a sub-step: its weight (s²), and one over its length (1/s).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct AirStep {
+pub(crate) struct ForceStep {
     pub weight: f32,
     pub inverse_substep: f32,
 }
 
-/// Without a past, in air.
+/// Without a past, under forces.
 #[inline(always)]
-pub(crate) fn predict_first_in_air(
+pub(crate) fn predict_first_forced(
     row: &mut [Block],
-    linearized: &[LinearizedDrag],
+    linearized: &[LinearForce],
     prediction: &Prediction,
-    air_step: &AirStep,
+    force_step: &ForceStep,
 ) {
     for (block, linearized) in row.iter_mut().zip(linearized) {
         let view = block.view_mut();
         for l in 0..LANES {
             let now = [view[DX + l], view[DY + l], view[DZ + l]];
-            let air = acceleration(linearized, now, air_step.inverse_substep, l);
+            let given = acceleration(linearized, now, force_step.inverse_substep, l);
             for axis in 0..3 {
                 let at = DX + axis * LANES + l;
-                let pull = prediction.pull[axis] + air_step.weight * air[axis];
+                let pull = prediction.pull[axis] + force_step.weight * given[axis];
                 let moved = now[axis] * prediction.own + pull;
                 view[at] = if view[W + l] > 0.0 { moved } else { now[axis] };
             }
@@ -161,14 +161,14 @@ pub(crate) fn predict_first_in_air(
     }
 }
 
-/// With a past, which moves on by a sub-step, in air.
+/// With a past, which moves on by a sub-step, under forces.
 #[inline(always)]
-pub(crate) fn predict_in_air(
+pub(crate) fn predict_forced(
     row: &mut [Block],
     past: &mut [Earlier],
-    linearized: &[LinearizedDrag],
+    linearized: &[LinearForce],
     prediction: &Prediction,
-    air_step: &AirStep,
+    force_step: &ForceStep,
 ) {
     let Prediction {
         own,
@@ -177,25 +177,25 @@ pub(crate) fn predict_in_air(
         pull,
         ..
     } = *prediction;
-    let AirStep {
+    let ForceStep {
         weight,
         inverse_substep,
-    } = *air_step;
+    } = *force_step;
     for ((block, Earlier(earlier)), linearized) in row.iter_mut().zip(past).zip(linearized) {
         let view = block.view_mut();
-        let (mut free, mut air) = ([0; LANES], [[0.0; LANES]; 3]);
+        let (mut free, mut given) = ([0; LANES], [[0.0; LANES]; 3]);
         for l in 0..LANES {
             free[l] = if view[W + l] > 0.0 { u32::MAX } else { 0 };
             let now = [view[DX + l], view[DY + l], view[DZ + l]];
             let [x, y, z] = acceleration(linearized, now, inverse_substep, l);
-            (air[0][l], air[1][l], air[2][l]) = (x, y, z);
+            (given[0][l], given[1][l], given[2][l]) = (x, y, z);
         }
         for axis in 0..3 {
             let at = DX + axis * LANES;
             for l in 0..LANES {
                 let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
                 let moved = own * now + one * (now - before) + two * (before - first);
-                let moved = moved + (pull[axis] + weight * air[axis][l]);
+                let moved = moved + (pull[axis] + weight * given[axis][l]);
                 let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
                 view[at + l] = f32::from_bits(chosen);
                 earlier[axis + 3][l] = before;

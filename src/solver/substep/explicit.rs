@@ -23,11 +23,11 @@ impl Solver {
     /// never do: on a mesh that was no grid, with tethers, with damping along springs, or if a spring is rigid.
     pub fn longest_explicit_substep(&self, particles: &ClothParticles) -> f32 {
         let blocks = particles.blocks();
-        match &self.forces {
-            Some(forces) if self.tethers.is_empty() && self.retardation == 0.0 => {
+        match &self.soft_springs {
+            Some(soft_springs) if self.tethers.is_empty() && self.retardation == 0.0 => {
                 let bent = self.bending.as_ref();
                 let bent = bent.map_or(f32::INFINITY, |bending| bending.longest_push(blocks));
-                forces.longest_substep(blocks).min(bent)
+                soft_springs.longest_substep(blocks).min(bent)
             }
             _ => 0.0,
         }
@@ -36,8 +36,8 @@ impl Solver {
     /// Whether a sub-step of `dt` (s) may be short enough for forces; for most cloths the first rows show that it is
     /// not.
     fn may_be_explicit(&self, particles: &ClothParticles, dt: f32) -> bool {
-        let forces = self.forces.as_ref();
-        forces.is_some_and(|forces| forces.is_short(particles.blocks(), dt))
+        let soft_springs = self.soft_springs.as_ref();
+        soft_springs.is_some_and(|springs| springs.is_short(particles.blocks(), dt))
     }
 
     /// Whether the springs of the coming tick act by explicit forces.
@@ -79,7 +79,7 @@ impl Solver {
 
     /// Turns explicit forces off: chains are solved, however soft they are.
     #[doc(hidden)]
-    pub fn forget_forces(&mut self) {
-        self.forces = None;
+    pub fn forget_soft_springs(&mut self) {
+        self.soft_springs = None;
     }
 }

@@ -5,10 +5,7 @@ mod started;
 #[cfg(test)]
 mod tests;
 
-use bevy::math::Vec3;
-
 use super::{
-    air::{Air, AirMemory, Airflow},
     bending::{Bending, ClothCreasing},
     chains::GridSolver,
     forces::Forces,
@@ -16,6 +13,7 @@ use super::{
     kernels::SimdLevel,
     list::ListSolver,
     partitions::with_threads_awake,
+    soft_springs::SoftSprings,
     spring_solver::SpringSolver,
     step::{PinMotion, SubStep, TickStep},
     stretch::Stretch,
@@ -47,9 +45,10 @@ pub struct Solver {
     layout: Layout,
     spring_solver: Box<dyn SpringSolver>,
     /// Of a grid without rigid springs.
-    forces: Option<Box<Forces>>,
+    soft_springs: Option<Box<SoftSprings>>,
     bending: Option<Bending>,
-    air: Option<Box<Airflow>>,
+    /// Those of a game, besides gravity.
+    pub forces: Forces,
     tethers: Tethers,
     free_pieces: FreePieces,
     anchors: Anchors,
@@ -108,14 +107,16 @@ impl Solver {
                 }
             }
         };
-        let forces = match springs.storage() {
-            SpringStorage::Grid(grid, compliances) => Forces::new(grid, compliances).map(Box::new),
+        let soft_springs = match springs.storage() {
+            SpringStorage::Grid(grid, compliances) => {
+                SoftSprings::new(grid, compliances).map(Box::new)
+            }
             SpringStorage::List(list) => on_grid
-                .and_then(|grid| Forces::of_list(grid, layout, list))
+                .and_then(|grid| SoftSprings::of_list(grid, layout, list))
                 .map(Box::new),
         };
         Self {
-            forces,
+            soft_springs,
             ..Self::of(layout, spring_solver)
         }
     }
@@ -124,9 +125,9 @@ impl Solver {
         Self {
             layout,
             spring_solver,
-            forces: None,
+            soft_springs: None,
             bending: None,
-            air: None,
+            forces: Forces::default(),
             tethers: Tethers::default(),
             free_pieces: FreePieces::default(),
             anchors: Anchors::default(),
@@ -170,53 +171,9 @@ impl Solver {
         }
     }
 
-    /// Sets uniform air around the surface that the solver was made for; `None` for no air, which costs nothing.
-    pub fn set_air(&mut self, surface: &Surface, air: Option<Air>) {
-        match (air, &mut self.air) {
-            (Some(air), Some(known)) => known.set(air),
-            (Some(air), none) => *none = Some(Box::new(Airflow::new(surface, air))),
-            (None, known) => *known = None,
-        }
-    }
-
-    /// Sets a wind that depends on the position, in place of [`Air::wind`], until the air is set again. `at` takes a
-    /// position (m) to the velocity of the air (m/s), both in the cloth's frame. It is called at some 80 positions
-    /// around the current particles, and interpolated between them. These are nine in each direction of a grid, or a
-    /// lattice of up to 5 × 5 × 5 around a mesh. Without air it is not called.
-    pub fn set_local_wind(&mut self, particles: &ClothParticles, at: impl FnMut(Vec3) -> Vec3) {
-        if let Some(air) = &mut self.air {
-            air.set_local_wind(particles, at);
-        }
-    }
-
-    /// Impulse that the air gave the cloth in the last tick, in the cloth's frame (N s).
-    pub fn air_impulse(&self) -> Vec3 {
-        self.air.as_ref().map_or(Vec3::ZERO, |air| air.impulse())
-    }
-
     /// Calls `visit` with the ends of each spring of a mesh, and its tension T L₀/L in the last sub-step (N).
     pub(crate) fn for_each_tension(&self, visit: &mut dyn FnMut([u32; 2], f32)) {
         self.spring_solver.for_each_tension(visit);
-    }
-
-    /// The volume that a closed mesh encloses (m³), and its gauge pressure (Pa), as of the last sub-step; 0 without
-    /// [`Air::pressure`].
-    pub fn enclosed(&self) -> (f32, f32) {
-        self.air.as_ref().map_or((0.0, 0.0), |air| air.enclosed())
-    }
-
-    /// The memory of the air for the next tick.
-    pub(crate) fn air_memory(&self) -> AirMemory {
-        self.air
-            .as_ref()
-            .map_or_else(AirMemory::default, |air| air.memory())
-    }
-
-    /// Restores the memory of the air from the last tick.
-    pub(crate) fn set_air_memory(&mut self, memory: AirMemory) {
-        if let Some(air) = &mut self.air {
-            air.set_memory(memory);
-        }
     }
 
     /// Sets the damping along springs: [`ClothMaterial::stretch_damping`](crate::cloth::ClothMaterial::stretch_damping)
@@ -250,8 +207,8 @@ impl Solver {
     /// Springs that don't belong to a grid are always one partition.
     pub fn set_partitions(&mut self, partitions: usize) {
         self.partitions = partitions;
-        if let Some(forces) = &mut self.forces {
-            forces.set_partitions(partitions);
+        if let Some(soft_springs) = &mut self.soft_springs {
+            soft_springs.set_partitions(partitions);
         }
     }
 
@@ -260,10 +217,10 @@ impl Solver {
         self.spring_solver.partitions(self.partitions)
     }
 
-    /// Partitions in a tick of forces.
+    /// Partitions in a tick of explicit springs.
     #[cfg(test)]
-    pub(super) fn forces_partitions(&self) -> usize {
-        self.forces.as_ref().map_or(1, |forces| forces.partitions())
+    pub(super) fn explicit_partitions(&self) -> usize {
+        (self.soft_springs.as_ref()).map_or(1, |soft_springs| soft_springs.partitions())
     }
 
     /// Sets the SIMD level.

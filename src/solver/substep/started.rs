@@ -7,7 +7,7 @@ use crate::{
         bending::BendingSchedule,
         damping_reference::DampingReference,
         energy::Energy,
-        kernels::{AirStep, Prediction, StepScale, weight},
+        kernels::{ForceStep, Kernels, Prediction, StepScale, weight},
         partitions::in_partitions,
         spin::Spin,
         spring_solver::Motion,
@@ -96,9 +96,7 @@ impl Solver {
             return tick;
         }
         let dt = tick.substep();
-        if let Some(air) = &mut self.air {
-            air.begin(step.seconds, tick.substeps());
-        }
+        self.forces.begin(step.seconds, tick.substeps());
         // Jolts keep cloth that touches something awake, and two layers may pass each other by one.
         if let Some(bending) = &self.bending
             && step.order == TimeOrder::Second
@@ -114,8 +112,8 @@ impl Solver {
             particles.zero_pin_displacements();
             return tick;
         }
-        // The work of a wind is no excess, and not known here.
-        if self.air.is_none() {
+        // The work of forces is no excess, and not known here.
+        if self.forces.are_none() {
             tick.watched = Energy::watched(particles, dt, step.acceleration);
         }
         particles.set_substep(dt);
@@ -124,7 +122,7 @@ impl Solver {
             particles.past_mut().forget(0);
         }
         // Other causes that turn the cloth are not known here.
-        if self.air.is_none() {
+        if self.forces.are_none() {
             let [drift, _] = tick.damping_reference.follow(particles.blocks());
             tick.spin = Spin::of(particles, &step, pins, drift, &self.free_pieces);
         }
@@ -143,8 +141,8 @@ impl Solver {
 
     /// How many partitions a tick's sub-steps are cut into.
     pub(crate) fn partitions_of(&self, tick: &StartedTick) -> usize {
-        match &self.forces {
-            Some(forces) if tick.is_explicit => forces.partitions(),
+        match &self.soft_springs {
+            Some(soft_springs) if tick.is_explicit => soft_springs.partitions(),
             _ => self.partitions(),
         }
     }
@@ -160,23 +158,27 @@ impl Solver {
         if tick.next == u32::MAX {
             return None;
         }
-        if tick.is_explicit {
-            return self.substep_by_forces(particles, pins, tick);
+        let kernels = self.simd_level.kernels();
+        let mut substep = SubStep {
+            index: tick.next,
+            ..SubStep::first_of(tick.substeps())
+        };
+        if substep.index < substep.count {
+            (self.forces).before_substep(substep.index, particles, &kernels);
+            (tick.damping_reference).set_force(self.forces.memory.force);
+            for pin in existing(pins, particles.len()) {
+                let target = pin.from.lerp(pin.to, substep.end());
+                particles.set_pin_target(pin.particle as usize, target);
+            }
         }
-        if tick.next == tick.substeps() {
+        if tick.is_explicit {
+            return self.substep_explicitly(particles, tick, substep, &kernels);
+        }
+        if substep.index == substep.count {
             return None;
         }
         let step = tick.step;
         let dt = tick.substep();
-        let kernels = self.simd_level.kernels();
-        let mut substep = SubStep {
-            index: tick.next,
-            count: tick.substeps(),
-            farthest_move: 0.0,
-        };
-        for pin in existing(pins, particles.len()) {
-            particles.set_pin_target(pin.particle as usize, pin.from.lerp(pin.to, substep.end()));
-        }
         self.tethers.locate(particles.blocks(), &mut self.anchors);
         let kind = match step.order {
             TimeOrder::First => StepKind::First,
@@ -184,11 +186,9 @@ impl Solver {
         };
         let weight_dt2 = weight(kind) * dt * dt;
         let pull = step.acceleration * weight_dt2;
-        self.predict(particles, tick, kind, weight_dt2);
+        self.predict(particles, tick, kind, weight_dt2, &kernels);
         let blocks = particles.blocks_mut();
-        if let Some(air) = &mut self.air {
-            air.press(blocks, weight_dt2);
-        }
+        self.forces.press(blocks, weight_dt2);
         let bends_for = tick.bending.next(tick.next, tick.substeps());
         if let Some(bending) = &mut self.bending
             && bends_for > 0
@@ -221,40 +221,35 @@ impl Solver {
         Some(substep)
     }
 
-    /// Moves the particles by the next sub-step of the kind as far as nothing but gravity and air acts on them. `weight` is that
-    /// of a force in it (s²).
+    /// Moves the particles by the next sub-step of the kind under gravity and forces alone. `weight` is that of a force in it (s²).
     fn predict(
         &mut self,
         particles: &mut ClothParticles,
         tick: &mut StartedTick,
         kind: StepKind,
         weight: f32,
+        kernels: &Kernels,
     ) {
         let (step, dt) = (tick.step, tick.substep());
-        let kernels = self.simd_level.kernels();
         let partitions = self.partitions();
         let kept = (1.0 - step.damping).powf(dt / DAMPING_REFERENCE);
         let pull = step.acceleration * weight;
-        if let Some(air) = &mut self.air {
-            air.before_substep(tick.next, particles, &kernels);
-            tick.damping_reference.blow(air.memory().force);
-        }
         (self.free_pieces).measure(particles.blocks(), step.damping);
         let frame = tick.damping_reference.follow(particles.blocks());
         let prediction = Prediction::new(kind, kept, pull, frame);
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
         tick.damping_reference
             .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
-        let air_step = AirStep {
+        let force_step = ForceStep {
             weight,
             inverse_substep: 1.0 / dt,
         };
-        let linearized = self.air.as_ref().map(|air| air.linearized());
+        let linearized = self.forces.linearized();
         let (blocks, past) = particles.blocks_and_past();
         match (step.order, linearized) {
             (TimeOrder::First, None) => (kernels.predict_first)(blocks, &prediction),
             (TimeOrder::First, Some(linearized)) => {
-                (kernels.predict_first_in_air)(blocks, linearized, &prediction, &air_step);
+                (kernels.predict_first_forced)(blocks, linearized, &prediction, &force_step);
             }
             (TimeOrder::Second, linearized) => {
                 let predict = |first: usize, blocks: &mut [Block], past: &mut [Earlier]| {
@@ -262,7 +257,7 @@ impl Solver {
                         return (kernels.predict)(blocks, past, &prediction);
                     };
                     let linearized = &linearized[first..first + blocks.len()];
-                    (kernels.predict_in_air)(blocks, past, linearized, &prediction, &air_step);
+                    (kernels.predict_forced)(blocks, past, linearized, &prediction, &force_step);
                 };
                 if partitions > 1 {
                     let size = blocks.len().div_ceil(partitions);
@@ -281,42 +276,30 @@ impl Solver {
         });
     }
 
-    /// The next sub-step of a tick of forces. The call after the last one ends the tick.
-    fn substep_by_forces(
+    /// The next sub-step of a tick of explicit springs. The call after the last one ends the tick.
+    fn substep_explicitly(
         &mut self,
         particles: &mut ClothParticles,
-        pins: &[PinMotion],
         tick: &mut StartedTick,
+        mut substep: SubStep,
+        kernels: &Kernels,
     ) -> Option<SubStep> {
-        let kernels = self.simd_level.kernels();
-        if let Some(air) = &mut self.air
-            && tick.next < tick.substeps()
-        {
-            air.before_substep(tick.next, particles, &kernels);
-            tick.damping_reference.blow(air.memory().force);
-        }
-        let forces = self.forces.as_mut().expect("forces");
-        let bends_for = tick.bending.for_kick(tick.next, tick.substeps());
+        let soft_springs = self.soft_springs.as_mut().expect("soft springs");
+        let bends_for = tick.bending.for_kick(substep.index, substep.count);
         let bending = self.bending.as_mut().map(|bending| (bending, bends_for));
-        let linearized = self.air.as_ref().map(|air| air.linearized());
-        let damping_reference = &mut tick.damping_reference;
-        let substep = forces.substep(
-            particles,
+        substep.farthest_move = soft_springs.substep(
+            particles.blocks_mut(),
             &tick.step,
-            tick.next,
-            damping_reference,
-            pins,
+            substep,
+            &mut tick.damping_reference,
             bending,
-            linearized,
+            self.forces.linearized(),
             &mut self.free_pieces,
-            &kernels,
+            kernels,
         );
-        tick.next = if substep.is_some() {
-            tick.next + 1
-        } else {
-            u32::MAX
-        };
-        substep
+        let is_moved = substep.index < substep.count;
+        tick.next = if is_moved { tick.next + 1 } else { u32::MAX };
+        is_moved.then_some(substep)
     }
 
     /// Ends a tick of which all sub-steps are done, and measures the stretch.
@@ -353,9 +336,7 @@ impl Solver {
         if step.seconds <= 0.0 {
             return self.measure(particles);
         }
-        if let Some(air) = &mut self.air {
-            air.settle(particles, &self.simd_level.kernels());
-        }
+        (self.forces).settle(particles, &self.simd_level.kernels());
         if tick.is_explicit {
             put_pins(particles, pins);
             particles.past_mut().set_moved();

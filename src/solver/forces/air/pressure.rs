@@ -5,6 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+use super::gas::FILLING;
 use crate::cloth::{ClothError, MeshError, QuantityError, Surface};
 
 /// Mean pressure of the air at sea level (Pa), of the International Standard Atmosphere (ISO 2533).
@@ -74,6 +75,17 @@ impl ClothPressure {
             Ok(())
         } else {
             Err(MeshError::NotClosed.into())
+        }
+    }
+
+    /// Largest acceleration (m/s²) that it may give a cloth of this areal density (kg/m²) within `seconds`: gas does not
+    /// accelerate it beyond the speed at which it fills.
+    pub(crate) fn acceleration(&self, areal_density: f32, seconds: f32) -> f32 {
+        match self {
+            Self::Gauge(pressure) => pressure.abs() / areal_density,
+            Self::Gas { .. } if seconds > 0.0 => FILLING / seconds,
+            // Gas fills nothing in zero time.
+            Self::Gas { .. } => 0.0,
         }
     }
 }

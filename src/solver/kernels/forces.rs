@@ -1,4 +1,4 @@
-//! The air's force on the face of a particle, and its share in each sub-step.
+//! Forces on particles: the air's on the face of each, and the share of all in each sub-step.
 //!
 //! # The floor
 //! A pass over eight particles needs three roots and two divisions, which take a core with AVX2 some 45 cycles. It also
@@ -7,18 +7,18 @@
 use super::{barrier::one_block_at_a_time, each::three, pentadiagonal::Vec3Lanes};
 use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X};
 
-/// The air's action on eight particles until its next evaluation: an acceleration of `push − drag (drag · v)` at the
-/// velocity v.
+/// The action of forces on eight particles until their next evaluation: an acceleration of `push − drag (drag · v)` at the
+/// velocity v. Both are 0 for pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
-pub(crate) struct LinearizedDrag {
+pub(crate) struct LinearForce {
     /// x, y and z (m/s²).
     pub push: Vec3Lanes,
     /// Along the normal, the root of the damping rate (1/√s).
     pub drag: Vec3Lanes,
 }
 
-impl LinearizedDrag {
+impl LinearForce {
     pub const NONE: Self = Self {
         push: [[0.0; LANES]; 3],
         drag: [[0.0; LANES]; 3],
@@ -49,14 +49,14 @@ const STRONGEST: f32 = 1.0e25;
 const HEAVIEST: f32 = 1.0e-30;
 
 /// The air's action on eight particles with these areas (normals as long as the area, m²) in these winds (m/s), and the
-/// position of each along its drag, for [`air_impulse`].
+/// position of each along its drag, for [`force_impulse`].
 #[inline(always)]
 fn linearize(
     view: &View,
     area: &Vec3Lanes,
     wind: &Vec3Lanes,
     coefficients: &AeroCoefficients,
-    linearized: &mut LinearizedDrag,
+    linearized: &mut LinearForce,
     place: &mut Lanes,
 ) {
     for l in 0..LANES {
@@ -100,7 +100,7 @@ fn linearize(
 /// Position of a particle along its drag, at the start of its last displacement. The difference of two is the sum of
 /// the displacements at the start of sub-steps.
 #[inline(always)]
-fn place_along(view: &View, linearized: &LinearizedDrag, l: usize) -> f32 {
+fn place_along(view: &View, linearized: &LinearForce, l: usize) -> f32 {
     let drag = three(|axis| linearized.drag[axis][l]);
     let was = three(|axis| view[X + axis * LANES + l] - view[DX + axis * LANES + l]);
     dot(drag, was)
@@ -118,7 +118,7 @@ pub(crate) fn air_linearize(
     areas: &[Vec3Lanes],
     winds: &[Vec3Lanes],
     coefficients: &AeroCoefficients,
-    linearized: &mut [LinearizedDrag],
+    linearized: &mut [LinearForce],
     places: &mut [Lanes],
 ) {
     let of = blocks.iter().zip(areas).zip(winds);
@@ -128,11 +128,11 @@ pub(crate) fn air_linearize(
     }
 }
 
-/// Adds to `sum` the impulse (N s) that the air has given the particles of some blocks since they were looked at, `seconds` ago.
+/// Adds to `sum` the impulse (N s) that forces have given the particles of some blocks since their evaluation, `seconds` ago.
 #[inline(always)]
-pub(crate) fn air_impulse(
+pub(crate) fn force_impulse(
     blocks: &[Block],
-    linearized: &[LinearizedDrag],
+    linearized: &[LinearForce],
     places: &[Lanes],
     seconds: f32,
     sum: &mut Vec3Lanes,
@@ -156,7 +156,7 @@ pub(crate) fn air_impulse(
 /// The acceleration (m/s²) of one lane that moved by this in a sub-step (m).
 #[inline(always)]
 pub(crate) fn acceleration(
-    linearized: &LinearizedDrag,
+    linearized: &LinearForce,
     moved: [f32; 3],
     inverse_substep: f32,
     l: usize,
@@ -166,11 +166,11 @@ pub(crate) fn acceleration(
     three(|axis| linearized.push[axis][l] - drag[axis] * slowed)
 }
 
-/// Adds the air's share to displacements, with this weight (s²).
+/// Adds the share of forces to displacements, with this weight (s²).
 #[inline(always)]
-pub(crate) fn air_push(
+pub(crate) fn force_push(
     row: &mut [Block],
-    linearized: &[LinearizedDrag],
+    linearized: &[LinearForce],
     weight: f32,
     inverse_substep: f32,
 ) {

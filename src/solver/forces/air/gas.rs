@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Largest speed at which gas moves particles outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
-pub(crate) const FILLING: f32 = 10.0;
+pub(super) const FILLING: f32 = 10.0;
 
 /// An amount of gas, and the pressure around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +46,7 @@ pub(crate) struct Gas {
 impl Gas {
     /// Adds the displacements by gas to those of a sub-step of length `seconds`, with this weight (s²). Returns the
     /// impulse (N s).
-    pub fn press(
+    pub(super) fn press(
         &mut self,
         amount: Amount,
         enclosed: Enclosed,

@@ -7,7 +7,12 @@ use crate::solver::kernels::air_areas;
 use crate::{
     cloth::{Cloth, ClothMaterial, DX, Springs, X},
     meshes,
-    solver::{kernels::SimdLevel, step::TickStep, substep::Solver},
+    solver::{
+        forces::{ForceInputs, Forces},
+        kernels::SimdLevel,
+        step::TickStep,
+        substep::Solver,
+    },
 };
 
 const AIR: Air = Air {
@@ -15,8 +20,15 @@ const AIR: Air = Air {
     drag: 1.2,
     lift: 1.5,
     wind: Vec3::new(2.0, -1.0, 6.0),
-    pressure: None,
 };
+
+/// Its air alone.
+fn in_air() -> ForceInputs {
+    ForceInputs {
+        air: Some(AIR),
+        ..ForceInputs::default()
+    }
+}
 
 /// A crumpled grid.
 fn crumpled(columns: u32, rows: u32) -> (Surface, ClothParticles) {
@@ -45,8 +57,7 @@ fn shake(particles: &mut ClothParticles) {
 fn a_particle_stands_for_half_the_diamond_of_its_neighbours() {
     for (columns, rows) in [(2, 2), (7, 3), (8, 4), (9, 5), (16, 3), (33, 6), (64, 2)] {
         let (surface, particles) = crumpled(columns, rows);
-        let mut airflow = Airflow::new(&surface, AIR);
-        airflow.begin(1.0 / 64.0, 1);
+        let mut airflow = Airflow::new(&surface);
         let layout = particles.layout();
         let strip = layout.strip as usize;
         for row in 0..rows as usize {
@@ -169,13 +180,15 @@ fn every_instruction_set_and_thread_count_gives_the_same_bits() {
             let mut solver = Solver::of_surface(&surface, &springs);
             solver.set_simd_level(level);
             solver.set_partitions(partitions);
-            solver.set_air(&surface, Some(AIR));
+            solver.forces.set(&surface, in_air());
             let mut particles = start.clone();
             for _ in 0..6 {
-                solver.set_local_wind(&particles, |place| AIR.wind + place);
+                solver
+                    .forces
+                    .set_local_wind(&particles, |place| AIR.wind + place);
                 solver.advance(&mut particles, TickStep::default(), &[], |_, _| false);
             }
-            let impulse = solver.air_impulse().to_array().map(f32::to_bits);
+            let impulse = solver.forces.impulse().to_array().map(f32::to_bits);
             (particles, impulse)
         };
         let truth = run(SimdLevel::Baseline, 1);
@@ -210,7 +223,10 @@ fn the_air_of_any_place_and_speed_is_finite() {
             }),
         ];
         for ((at, inverse_mass), pressure) in each.flat_map(|one| pressures.map(|of| (one, of))) {
-            let air = Air { pressure, ..AIR };
+            let inputs = ForceInputs {
+                pressure,
+                ..in_air()
+            };
             let (far, fast) = (at / 18, at % 18);
             let mut particles = particles.clone();
             shake(&mut particles);
@@ -225,9 +241,10 @@ fn the_air_of_any_place_and_speed_is_finite() {
                         .expect("it exists");
                 }
             }
-            let (kernels, mut airflow) = (SimdLevel::Auto.kernels(), Airflow::new(&surface, air));
-            airflow.begin(1.0 / 64.0, 4);
-            airflow.before_substep(0, &particles, &kernels);
+            let (kernels, mut forces) = (SimdLevel::Auto.kernels(), Forces::default());
+            forces.set(&surface, inputs);
+            forces.begin(1.0 / 64.0, 4);
+            forces.before_substep(0, &particles, &kernels);
             for index in 0..particles.len() {
                 let slot = surface.layout().slot_of(index);
                 let view = particles.blocks_mut()[slot.block].view_mut();
@@ -235,20 +252,21 @@ fn the_air_of_any_place_and_speed_is_finite() {
                     view[X + axis + slot.lane] += view[DX + axis + slot.lane];
                 }
             }
-            airflow.press(particles.blocks_mut(), 1.0e-5);
-            airflow.settle(&particles, &kernels);
-            let is_finite = |l: &LinearizedDrag| {
+            forces.press(particles.blocks_mut(), 1.0e-5);
+            forces.settle(&particles, &kernels);
+            let is_finite = |l: &LinearForce| {
                 let both = l.push.iter().chain(&l.drag).flatten();
                 both.clone().all(|value| value.is_finite())
             };
-            let impulse = airflow.impulse();
+            let impulse = forces.impulse();
+            let linearized = forces.linearized().expect("air");
             assert!(
-                airflow.linearized().iter().all(is_finite) && impulse.is_finite(),
+                linearized.iter().all(is_finite) && impulse.is_finite(),
                 "10^{far} m, 10^{fast} m a sub-step, {inverse_mass} per kg: {impulse}"
             );
-            let is_pushed = |l: &LinearizedDrag| l.push.iter().flatten().any(|push| *push != 0.0);
+            let is_pushed = |l: &LinearForce| l.push.iter().flatten().any(|push| *push != 0.0);
             let is_ordinary = far == 0 && fast == 0;
-            assert!(!is_ordinary || airflow.linearized().iter().any(is_pushed));
+            assert!(!is_ordinary || linearized.iter().any(is_pushed));
         }
     }
 }

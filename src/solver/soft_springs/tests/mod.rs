@@ -1,4 +1,4 @@
-//! Forces against the same springs in f64, partitions against one partition, and when they are chosen.
+//! Soft springs against the same ones in f64, partitions against one partition, and when they are chosen.
 
 mod torn;
 
@@ -178,7 +178,7 @@ fn check_bits(is_torn: bool) {
         let step = step(if is_torn { 120 } else { 60 });
         solver.set_partitions(partitions);
         solver.set_simd_level(simd_level);
-        assert_eq!(solver.forces_partitions(), partitions.min(4));
+        assert_eq!(solver.explicit_partitions(), partitions.min(4));
         assert!(solver.is_explicit(&particles, &step));
         for _ in 0..3 {
             solver.advance(&mut particles, step, &[], |_, _| false);
@@ -208,12 +208,12 @@ fn the_limit_of_a_rope_is_that_of_a_chain() {
     let SpringStorage::Grid(grid, compliances) = springs.storage() else {
         panic!("a grid's");
     };
-    let forces = Forces::new(grid, compliances).expect("soft springs");
+    let springs = SoftSprings::new(grid, compliances).expect("soft springs");
     let (width, length) = (0.02, 0.1);
     let stiffness = width / (length * 1.0e-3);
     let square = 4.0 * stiffness / (0.15 * width * length);
     let longest = 0.95 * 2.0 / f32::sqrt(square);
-    let found = forces.longest_substep(particles.blocks());
+    let found = springs.longest_substep(particles.blocks());
     assert!((found / longest - 1.0).abs() < 1.0e-5, "{found} {longest}");
 }
 
@@ -229,13 +229,13 @@ fn the_limit_is_that_of_the_stiffest_particle() {
     let SpringStorage::Grid(grid, compliances) = springs.storage() else {
         panic!("a grid's");
     };
-    let forces = Forces::new(grid, compliances).expect("soft springs");
+    let springs = SoftSprings::new(grid, compliances).expect("soft springs");
     let mass = 0.15 * 0.1 * 0.1;
     let square = 8.0 / mass * (1.0 / 1.0e-3 + 1.0 / 2.0e-3_f32);
     let longest = 0.95 * 2.0 / square.sqrt();
     let mut at = |away: f32| {
         particles.transform(Isometry3d::from_translation(away * Vec3::X));
-        let found = forces.longest_substep(particles.blocks());
+        let found = springs.longest_substep(particles.blocks());
         particles.transform(Isometry3d::from_translation(-away * Vec3::X));
         found
     };
