@@ -59,8 +59,9 @@ impl Window {
             let closest = flattened.closest;
             let least = LEAST * thickness.min((closest - thickness).max(OF_REST * closest));
             slack = flattened.slack(flattened.unfolded(places, scratch), thickness, OF_REST);
-            // Also for NaN.
-            is_folded = !(slack > least);
+            // Not unfolded for NaN.
+            let is_unfolded = slack > least;
+            is_folded = !is_unfolded;
             if is_folded {
                 slack = (least - slack).clamp(AGAIN[0] * thickness, AGAIN[1] * thickness);
             }
@@ -179,8 +180,9 @@ impl Folds {
                 let (from, patches) = cloth.sheet.windows().patches_in(window);
                 let used = used(patches, ends, &self.references[first_reference + from..]);
                 let mut free = state.slack - used;
-                // Also for NaN.
-                if state.is_new || !(free > reserve) {
+                // Not so for NaN.
+                let has_slack = free > reserve;
+                if state.is_new || !has_slack {
                     let measured = Window::measured(cloth, window, places, &mut self.scratch);
                     self.windows[first + window] = measured;
                     self.has_new = true;
