@@ -1,11 +1,11 @@
 //! Floor 0: the definition of a cloth: its surface, particles, springs, material and pins.
 
 mod arrays;
-mod by_particle;
 mod cut;
 mod error;
 mod grain;
 mod grid;
+mod grouped;
 mod lanes;
 mod limits;
 mod lines;
@@ -63,8 +63,8 @@ pub use surface::{
 pub use tearing::ClothTearing;
 pub use tears::ClothTears;
 
-pub(crate) use by_particle::ByParticle;
 pub(crate) use cut::Cut;
+pub(crate) use grouped::Grouped;
 pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;

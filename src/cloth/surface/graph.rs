@@ -2,17 +2,17 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use crate::cloth::by_particle::ByParticle;
+use crate::cloth::grouped::Grouped;
 
 /// Neighbours of each particle, ascending, and their distances at rest (m).
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(crate) struct Graph(ByParticle<(u32, f32)>);
+pub(crate) struct Graph(Grouped<(u32, f32)>);
 
 impl Graph {
     /// The graph of edges between two particles, with their lengths (m); each edge once.
     pub fn new(particles: usize, edges: impl Iterator<Item = ([u32; 2], f32)> + Clone) -> Self {
         let both_ways = |([a, b], length): ([u32; 2], f32)| [(a, (b, length)), (b, (a, length))];
-        let mut neighbours = ByParticle::new(particles, || edges.clone().flat_map(both_ways));
+        let mut neighbours = Grouped::new(particles, || edges.clone().flat_map(both_ways));
         for particle in 0..particles as u32 {
             neighbours.of_mut(particle).sort_by_key(|near| near.0);
         }

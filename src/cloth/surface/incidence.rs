@@ -1,13 +1,13 @@
 //! The sides of a surface's faces, and the faces at each particle.
 
 use super::springs::{Side, sides_of};
-use crate::cloth::by_particle::ByParticle;
+use crate::cloth::grouped::Grouped;
 
 /// The sides of all faces, and the faces at each particle.
 #[derive(Debug, Default, Clone)]
 pub(super) struct Incidence {
     pub sides: Vec<Side>,
-    faces: ByParticle<u32>,
+    faces: Grouped<u32>,
 }
 
 impl Incidence {
@@ -18,7 +18,7 @@ impl Incidence {
         };
         Self {
             sides: sides_of(faces),
-            faces: ByParticle::new(particles, corners),
+            faces: Grouped::new(particles, corners),
         }
     }
 

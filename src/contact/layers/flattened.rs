@@ -12,7 +12,8 @@ pub(super) const MOST_PARTICLES: usize = 256;
 /// Part by which a bound is lowered: more than the rounding errors, and than what is missing at a border.
 const ROUNDING: f32 = 1.0e-3;
 
-/// A part of a surface, projected at rest onto its plane. Its faces cover the convex hull of its points there, once.
+/// A part of a surface, projected at rest onto its plane. Its faces cover the convex hull of its points there, each
+/// point once.
 ///
 /// # The proof that it does not touch itself
 /// The straight line between two points u and v of the plane stays within the faces. Along it the surface follows the gradients
@@ -24,8 +25,11 @@ const ROUNDING: f32 = 1.0e-3;
 ///   |x(u) − x(v)| ≥ λ |u − v|
 /// ```
 ///
-/// So no bend by less than a right angle to either side lets two points meet. A cone of normals says nothing
-/// about a patch whose outline crosses itself; this bound covers that, too.
+/// Any such R will do: a poor one only lowers λ. That of the middle of all F is a good one. What is flat at rest and bends
+/// by less than a right angle to either side of it keeps its points apart. A cone of normals says nothing about a patch whose outline
+/// crosses itself; this bound covers that, too.
+///
+/// Lines may leave the faces by [a little](super::flattening), where the border is not quite convex.
 #[derive(Debug)]
 pub(super) struct Flattened {
     pub particles: Vec<u32>,
@@ -44,17 +48,17 @@ pub(super) struct EightFaces {
     pub inverse: [Eight; 4],
 }
 
-/// What one measurement needs.
+/// Memory of a measurement, to be used again.
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
-    places: [Vec3A; MOST_PARTICLES],
+    places: Box<[Vec3A; MOST_PARTICLES]>,
     gradients: Vec<[Eight; 6]>,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
         Self {
-            places: [Vec3A::ZERO; MOST_PARTICLES],
+            places: Box::new([Vec3A::ZERO; MOST_PARTICLES]),
             gradients: Vec::new(),
         }
     }
@@ -70,7 +74,7 @@ impl Flattened {
     }
 
     /// A lower bound of the distance of any two features without a common particle, less that at which they touch (m), from
-    /// [λ](Self::unfolded). They touch at the `thickness`, or at a part `of_rest` of their distance at rest if that is less.
+    /// [λ](Self::unfolded); any number below 0 where they may touch. They touch at the `thickness`, or at a part `of_rest` of their distance at rest if that is less.
     pub fn slack(&self, unfolded: f32, thickness: f32, of_rest: f32) -> f32 {
         let of_rest = of_rest * self.ratio;
         let allowed = thickness.min(of_rest * self.closest);
@@ -158,15 +162,16 @@ fn least_eigenvalue(faces: &[EightFaces], scratch: &mut Scratch) -> f32 {
     }
     let sum = sums.iter().sum::<f32>();
     if !sum.is_finite() {
-        // Also without faces, and for NaN.
+        // Also without faces, and for NaN, which comparisons pass over.
         return f32::NEG_INFINITY;
     }
-    let largest = middle.iter().fold(0.0_f32, |most, of| most.max(of.abs()));
+    let each = low.iter().chain(&high).flatten();
+    let largest = each.fold(0.0_f32, |most, of| most.max(of.abs()));
     least.into_iter().fold(f32::INFINITY, f32::min) - ROUNDING * largest
 }
 
-/// The rotation of two columns, F (FᵀF)^(−1/2), with orthonormal columns however much rounds where F is nearly singular; `None` where it
-/// is.
+/// The rotation of two columns, F (FᵀF)^(−1/2); `None` if one is zero. Its columns are orthonormal, however F rounds where it is nearly
+/// singular.
 fn rotation(first: Vec3, second: Vec3) -> Option<[Vec3; 2]> {
     let (a, d, mixed) = (
         first.length_squared(),

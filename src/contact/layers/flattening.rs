@@ -1,27 +1,32 @@
-//! Lays parts of a surface flat.
+//! How parts of a surface are laid flat: by projection onto the plane of their mean normal at rest.
 
 use std::ops::Range;
 
 use bevy::math::{Vec2, Vec3};
 
 use super::flattened::{EightFaces, Flattened, MOST_PARTICLES};
-use crate::cloth::{ByParticle, Surface};
+use crate::cloth::{Grouped, Surface};
 
 /// Faces that leave the plane by more than the angle of this cosine are not laid flat.
 const LEAST_COSINE: f32 = 2.0 / 3.0;
 
-/// Part of a window's size by which what is missing at its border does not count.
+/// Part of a window's size by which what is missing at its border does not count. No face may be lower than this multiple of that: then
+/// a line that leaves the faces there is longer by less than the rounding that bounds allow for.
 const BORDER: f32 = 1.0e-5;
+const LOWEST: f32 = 100.0;
 
-/// Lays parts of a surface flat.
+/// Most faces of a window: Euler's two for each particle.
+const MOST_FACES: usize = 2 * MOST_PARTICLES;
+
+/// Memory for laying one part after the other.
 pub(super) struct Flattening<'a> {
     surface: &'a Surface,
     /// The faces around each particle.
-    around: ByParticle<u32>,
-    /// The last part that each face and each particle was in, and the particle's place there.
+    around: Grouped<u32>,
+    /// The last stamp that each face and each particle got, and the particle's place in that part. Each part has its own.
     last_of_face: Vec<u32>,
     last_of_particle: Vec<[u32; 2]>,
-    part: u32,
+    stamp: u32,
     faces: Vec<u32>,
 }
 
@@ -31,13 +36,13 @@ impl<'a> Flattening<'a> {
         let each = faces.iter().zip(0..);
         Self {
             surface,
-            around: ByParticle::new(surface.len(), || {
+            around: Grouped::new(surface.len(), || {
                 let each = each.clone();
                 each.flat_map(|(corners, face)| corners.iter().map(move |&of| (of, face)))
             }),
             last_of_face: vec![0; faces.len()],
             last_of_particle: vec![[0; 2]; surface.len()],
-            part: 0,
+            stamp: 0,
             faces: Vec::new(),
         }
     }
@@ -48,7 +53,7 @@ impl<'a> Flattening<'a> {
         of: impl Iterator<Item = [u32; 3]>,
         vertices: &[u32],
     ) -> Option<Flattened> {
-        self.part += 1;
+        self.stamp += 1;
         self.faces.clear();
         let (rest, all) = (self.surface.rest_positions(), self.surface.faces().all());
         let mut normal = Vec3::ZERO;
@@ -58,8 +63,11 @@ impl<'a> Flattening<'a> {
             normal += (b - a).cross(c - a);
             let around = self.around.of(face[0]).iter();
             let index = *around.clone().find(|&&index| all[index as usize] == face)?;
-            self.last_of_face[index as usize] = self.part;
+            self.last_of_face[index as usize] = self.stamp;
             self.faces.push(index);
+            if self.faces.len() > MOST_FACES {
+                return None;
+            }
         }
         let normal = normal.try_normalize()?;
         let [across, down] = normal.any_orthonormal_pair().into();
@@ -73,14 +81,16 @@ impl<'a> Flattening<'a> {
         let hull = Hull::of(points.map(place).collect());
         self.fill(&hull, place)?;
         let laid = self.laid(place, normal)?;
-        let is_laid = |vertex: &u32| self.last_of_particle[*vertex as usize][0] == self.part;
+        if laid.closest < LOWEST * hull.tolerance {
+            return None;
+        }
+        let is_laid = |vertex: &u32| self.last_of_particle[*vertex as usize][0] == self.stamp;
         vertices.iter().all(is_laid).then_some(laid)
     }
 
     /// Adds the faces between those that there are, until they cover their hull; `None` if some are missing.
     fn fill(&mut self, hull: &Hull, place: impl Fn(u32) -> Vec2) -> Option<()> {
         let all = self.surface.faces().all();
-        let most = 4 * self.faces.len() + 16;
         let mut next = 0;
         while next < self.faces.len() {
             let index = self.faces[next];
@@ -91,19 +101,24 @@ impl<'a> Flattening<'a> {
                 let has = |other: &&u32| **other != index && all[**other as usize].contains(&to);
                 let mut others = around.copied().filter(|other| has(&other));
                 let other = others.next();
-                let is_known = other.is_some_and(|of| self.last_of_face[of as usize] == self.part);
-                if others.next().is_some() {
+                let is_known = other.is_some_and(|of| self.last_of_face[of as usize] == self.stamp);
+                // Faces on both sides of an edge run it in opposite directions, or it has no two sides.
+                let is_opposite = |other: u32| {
+                    let [a, b, c] = all[other as usize];
+                    [[a, b], [b, c], [c, a]].contains(&[to, from])
+                };
+                if others.next().is_some() || !other.is_none_or(is_opposite) {
                     return None;
                 }
                 if is_known || !hull.is_crossed(place(from), place(to)) {
                     continue;
                 }
                 let other = other?;
-                if self.faces.len() == most {
-                    return None;
-                }
-                self.last_of_face[other as usize] = self.part;
+                self.last_of_face[other as usize] = self.stamp;
                 self.faces.push(other);
+            }
+            if self.faces.len() > MOST_FACES {
+                return None;
             }
         }
         Some(())
@@ -121,12 +136,18 @@ impl<'a> Flattening<'a> {
             let at = corners.map(&place);
             let [a, b, c] = corners.map(|corner| rest[corner as usize]);
             let area = (b - a).cross(c - a);
-            cosine = cosine.min(normal.dot(area) / area.length());
+            let own_cosine = normal.dot(area) / area.length();
             let [first, second] = [at[1] - at[0], at[2] - at[0]];
             let double = first.perp_dot(second);
             let longest = [first, second, at[2] - at[1]].map(Vec2::length);
-            closest = closest.min(double / longest.into_iter().fold(0.0, f32::max));
-            // All faces are face up, so each point is covered as often as any other.
+            let height = double / longest.into_iter().fold(0.0, f32::max);
+            let is_up = own_cosine >= LEAST_COSINE && height > 0.0 && height.is_finite();
+            // Not so for NaN.
+            if !is_up {
+                return None;
+            }
+            (cosine, closest) = (cosine.min(own_cosine), closest.min(height));
+            // All faces are face up, with one on either side of each edge. So each point is covered as often as any other.
             match middle {
                 None => middle = Some((at[0] + at[1] + at[2]) / 3.0),
                 Some(middle) if contains(&at, middle) => return None,
@@ -134,8 +155,8 @@ impl<'a> Flattening<'a> {
             }
             let places = corners.map(|corner| {
                 let last = &mut self.last_of_particle[corner as usize];
-                if last[0] != self.part {
-                    *last = [self.part, particles.len() as u32];
+                if last[0] != self.stamp {
+                    *last = [self.stamp, particles.len() as u32];
                     particles.push(corner);
                 }
                 last[1]
@@ -143,9 +164,7 @@ impl<'a> Flattening<'a> {
             let inverse = [second.y, -first.y, -second.x, first.x].map(|of| of / double);
             laid.push((places, inverse));
         }
-        // Also for NaN.
-        let is_flat = cosine >= LEAST_COSINE && closest > 0.0 && closest.is_finite();
-        if !is_flat || particles.len() > MOST_PARTICLES {
+        if particles.len() > MOST_PARTICLES {
             return None;
         }
         let faces = laid.chunks(8).map(|eight| {

@@ -1,7 +1,7 @@
 //! Which neighbouring patches may touch each other: those in sharp folds.
 //!
-//! A [window](super::windows) is unfolded while its faces [differ little](super::flattened) from a plane: no two of its patches touch,
-//! and none touches itself. Two neighbours are a pair only if all windows that have both are folded. A window is measured again once
+//! A [window](super::windows) is unfolded while its faces [bend little](super::flattened) from how they lie at rest: no two of its patches
+//! touch, and none touches itself. Two neighbours are a pair only if all windows that have both are folded. A window is measured again once
 //! any two points of its patches may have come nearer by its slack.
 
 use bevy::math::{Vec3A, Vec4, Vec4Swizzles};
@@ -13,10 +13,10 @@ use super::{
 
 /// Smallest slack of an unfolded window, as a fraction of the thickness or of a flat one's slack. With less, small motion would soon
 /// use it up; a pair of patches has a slack of its own.
-const LEAST: f32 = 0.2;
+const LEAST_SLACK: f32 = 0.2;
 
 /// Least and most that a folded window's points move before it is measured again, as fractions of the thickness.
-const AGAIN: [f32; 2] = [0.5, 2.0];
+const MEASURED_AGAIN: [f32; 2] = [0.5, 2.0];
 
 /// The windows of all cloths.
 #[derive(Debug, Default, Clone)]
@@ -41,7 +41,8 @@ struct Window {
     is_folded: bool,
     /// Whether it was measured in this sub-step: its references are those at the end of it.
     is_new: bool,
-    /// How far its points may come nearer to each other before it is measured again (m).
+    /// How far its points may move against each other before it is measured again (m): −∞ until it is first measured. ∞ for one of a cloth
+    /// that does not touch itself, which is not folded, and for one that cannot be laid flat, which is.
     slack: f32,
 }
 
@@ -57,13 +58,14 @@ impl Window {
         let (mut is_folded, mut slack) = (true, f32::INFINITY);
         if let Some(flattened) = cloth.sheet.windows().flattened(window) {
             let closest = flattened.closest;
-            let least = LEAST * thickness.min((closest - thickness).max(OF_REST * closest));
+            let least = LEAST_SLACK * thickness.min((closest - thickness).max(OF_REST * closest));
             slack = flattened.slack(flattened.unfolded(places, scratch), thickness, OF_REST);
             // Not unfolded for NaN.
             let is_unfolded = slack > least;
             is_folded = !is_unfolded;
             if is_folded {
-                slack = (least - slack).clamp(AGAIN[0] * thickness, AGAIN[1] * thickness);
+                slack = (least - slack)
+                    .clamp(MEASURED_AGAIN[0] * thickness, MEASURED_AGAIN[1] * thickness);
             }
         }
         Self {
@@ -83,7 +85,15 @@ fn used(patches: &[u32], ends: &[Vec4], references: &[Vec4]) -> f32 {
         let moved = end - middle.extend(0.0) - *reference;
         Vec3A::from_vec4(moved).length() + moved.w
     });
-    2.0 * used.fold(f32::NEG_INFINITY, f32::max)
+    // NaN stays: such a window is measured.
+    let most = |most: f32, used: f32| {
+        if used <= most || most.is_nan() {
+            most
+        } else {
+            used
+        }
+    };
+    2.0 * used.fold(0.0, most)
 }
 
 impl Folds {
@@ -95,15 +105,14 @@ impl Folds {
         for (index, cloth) in among.cloths.iter().enumerate() {
             self.firsts.push(next);
             let windows = cloth.sheet.windows();
-            // One of a cloth that does not touch itself does not matter.
-            let is_of_none = !among.of(index, index);
-            let slack = if is_of_none {
-                f32::INFINITY
-            } else {
+            let touches_itself = among.of(index, index);
+            let slack = if touches_itself {
                 f32::NEG_INFINITY
+            } else {
+                f32::INFINITY
             };
             next[0] += windows.count();
-            next[1] += windows.place_count();
+            next[1] += windows.member_count();
             next[2] += windows.pair_count();
             self.windows.resize(
                 next[0],
@@ -219,7 +228,7 @@ impl Folds {
                 };
                 let is_folded = |of: &u32| self.windows[first + *of as usize].is_folded;
                 let is_pair = &mut self.are_pairs[first_pair + pair];
-                if !*is_pair && windows.with(pair).iter().all(is_folded) {
+                if !*is_pair && windows.with_pair(pair).iter().all(is_folded) {
                     *is_pair = true;
                     found([a, b], first_pair + pair);
                 }
@@ -234,7 +243,7 @@ impl Folds {
             let cloth = motion.patches[pair.of[0] as usize].cloth as usize;
             let [first, _, first_pair] = self.firsts[cloth];
             let of = neighbours as usize - first_pair;
-            let mut windows = cloths[cloth].sheet.windows().with(of).iter();
+            let mut windows = cloths[cloth].sheet.windows().with_pair(of).iter();
             windows.any(|&window| !self.windows[first + window as usize].is_folded)
         })
     }

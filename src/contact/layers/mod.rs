@@ -19,7 +19,7 @@
 //!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
 //!    less, they are a thickness apart.
 //! 3. Neighbouring patches are apart, whatever their motion was, while a [projection](flattened) of their faces onto a plane keeps
-//!    all points apart there ([folds]). They fold by up to a right angle to either side.
+//!    all points apart there ([folds]). It proves bends of nearly a right angle to either side, less what the thickness takes.
 //! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
 //!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
 //!    it has not passed, or it is stopped.

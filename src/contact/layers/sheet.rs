@@ -25,7 +25,7 @@ use bevy::platform::collections::HashSet;
 
 use super::windows::Windows;
 use crate::{
-    cloth::{ByParticle, ClothGrid, Surface},
+    cloth::{ClothGrid, Grouped, Surface},
     hierarchy::QuadTree,
 };
 
@@ -46,7 +46,7 @@ pub(crate) struct Sheet {
     edges: Vec<[u16; 2]>,
     nodes: Vec<Node>,
     /// The patches with features of each particle.
-    patches_with: ByParticle<u32>,
+    patches_with: Grouped<u32>,
     /// The corners of eight features each, by their places among the particles of their patch: of owned vertices, faces, and
     /// edges. The last feature fills the rest of its eight.
     groups: Vec<[u16; 8]>,
@@ -137,7 +137,7 @@ impl Sheet {
 
     /// Finds the patches with features of each particle.
     fn find_patches(&mut self) {
-        self.patches_with = ByParticle::new(self.surface.len(), || {
+        self.patches_with = Grouped::new(self.surface.len(), || {
             let patches = 0..self.patches.len() as u32;
             patches.flat_map(|index| {
                 let particles = self.particles_of(index).iter();
@@ -295,7 +295,7 @@ impl Sheet {
         self.patches.len()
     }
 
-    /// The neighbouring patches that meet at a particle.
+    /// The windows: patches that meet at a particle.
     #[inline]
     pub(super) fn windows(&self) -> &Windows {
         &self.windows

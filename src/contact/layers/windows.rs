@@ -9,7 +9,10 @@
 //! ```
 
 use super::{flattened::Flattened, flattening::Flattening};
-use crate::cloth::{ByParticle, Surface};
+use crate::cloth::{Grouped, Surface};
+
+/// Most patches of a window. Where more meet, as in the hub of a wheel, their boxes tell which are near.
+const MOST_PATCHES: usize = 32;
 
 /// The windows of a sheet, and which patches are neighbours in them.
 #[derive(Debug, Default)]
@@ -17,11 +20,11 @@ pub(super) struct Windows {
     /// Laid flat, where that is possible.
     flattened: Vec<Option<Flattened>>,
     /// The patches of each window, in order.
-    patches: ByParticle<u32>,
+    patches: Grouped<u32>,
     /// The neighbours of each patch, itself included: those that do not come before it.
-    neighbours: ByParticle<u32>,
-    /// The windows of each patch with each of its neighbours.
-    shared: ByParticle<u32>,
+    neighbours: Grouped<u32>,
+    /// The windows of each pair of neighbours.
+    of_pairs: Grouped<u32>,
 }
 
 impl Windows {
@@ -36,6 +39,7 @@ impl Windows {
         let mut sets: Vec<&[u32]> = (0..surface.len() as u32).map(patches_with).collect();
         sets.sort_unstable_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
         sets.dedup();
+        sets.retain(|set| set.len() <= MOST_PATCHES);
         // A set within another is no window of its own.
         let mut windows_of: Vec<Vec<usize>> = vec![Vec::new(); patches];
         let mut windows: Vec<&[u32]> = Vec::new();
@@ -73,15 +77,15 @@ impl Windows {
         let shared = pairs.chunk_by(|a, b| a[..2] == b[..2]).enumerate();
         Self {
             flattened,
-            patches: ByParticle::new(windows.len(), || {
+            patches: Grouped::new(windows.len(), || {
                 let each = each.clone();
                 each.flat_map(|(index, patches)| patches.iter().map(move |&of| (index as u32, of)))
             }),
-            shared: ByParticle::new(neighbours.len(), || {
+            of_pairs: Grouped::new(neighbours.len(), || {
                 let shared = shared.clone();
                 shared.flat_map(|(pair, of)| of.iter().map(move |of| (pair as u32, of[2])))
             }),
-            neighbours: ByParticle::new(patches, || neighbours.iter().map(|&[a, b]| (a, b))),
+            neighbours: Grouped::new(patches, || neighbours.iter().map(|&[a, b]| (a, b))),
         }
     }
 
@@ -92,7 +96,7 @@ impl Windows {
 
     /// Number of pairs of neighbours.
     pub fn pair_count(&self) -> usize {
-        self.shared.len()
+        self.of_pairs.len()
     }
 
     /// A window laid flat; `None` if it cannot be.
@@ -109,7 +113,7 @@ impl Windows {
     }
 
     /// Number of patches in all windows: one counts in each of its windows.
-    pub fn place_count(&self) -> usize {
+    pub fn member_count(&self) -> usize {
         let last = self.count().checked_sub(1);
         last.map_or(0, |last| self.patches.range_of(last as u32).end)
     }
@@ -126,7 +130,7 @@ impl Windows {
 
     /// The windows that have both patches of a pair of neighbours.
     #[inline]
-    pub fn with(&self, pair: usize) -> &[u32] {
-        self.shared.of(pair as u32)
+    pub fn with_pair(&self, pair: usize) -> &[u32] {
+        self.of_pairs.of(pair as u32)
     }
 }

@@ -110,9 +110,10 @@ pub(crate) fn lane_motion(
         most: thickness / 2.0,
         deepest,
         // None for a half-space, which has no end.
-        tolerance: match thickness.is_finite() {
-            true => 1.0e-3 * thickness,
-            false => 0.0,
+        tolerance: if thickness.is_finite() {
+            1.0e-3 * thickness
+        } else {
+            0.0
         },
         is_swept: settings.is_swept,
         friction: settings.friction,

@@ -2,7 +2,7 @@
 
 use bevy::math::{DMat3, DVec2, DVec3, Vec3, Vec3A};
 
-use crate::cloth::{ByParticle, MapInline};
+use crate::cloth::{Grouped, MapInline};
 
 /// Regularisation, as a fraction: edges with nearly the same information about a face's curvature don't make it
 /// infinite.
@@ -36,7 +36,7 @@ pub(super) fn for_each_row(
     mut visit: impl FnMut(u32, &[(u32, f64)]),
 ) {
     // The patches around each particle, and which of their particles it is.
-    let around = ByParticle::new(rows, || {
+    let around = Grouped::new(rows, || {
         let all = patches.iter().flat_map(|(patch, _)| patch.particles);
         let places =
             (0..patches.len() as u32).flat_map(|patch| (0..6_u32).map(move |at| (patch, at)));

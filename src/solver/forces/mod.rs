@@ -27,9 +27,10 @@ const LARGEST_IMPULSE: f64 = 1.0e25;
 
 /// An impulse (N s), or none if it is NaN or too large.
 fn counted(given: DVec3) -> DVec3 {
-    match given.abs().max_element() < LARGEST_IMPULSE {
-        true => given,
-        false => DVec3::ZERO,
+    if given.abs().max_element() < LARGEST_IMPULSE {
+        given
+    } else {
+        DVec3::ZERO
     }
 }
 
@@ -137,6 +138,7 @@ impl Forces {
         if index.is_multiple_of(self.stride) {
             self.settle(particles, kernels);
             let (linearized, places) = (&mut self.linearized[..], &mut self.places[..]);
+            // The air writes; forces after it add.
             if let Some(airflow) = &mut self.airflow {
                 let stepped = (self.substep, index.is_multiple_of(self.wind_stride));
                 airflow.evaluate(particles, kernels, stepped, linearized, places);

@@ -11,7 +11,7 @@ mod tests;
 
 use bevy::math::{Vec2, Vec3};
 
-use crate::cloth::by_particle::ByParticle;
+use crate::cloth::grouped::Grouped;
 
 /// The cosine of the smallest angle between two edges that continue each other: 135°.
 const STRAIGHT: f32 = -std::f32::consts::FRAC_1_SQRT_2;
@@ -93,7 +93,7 @@ fn continuations(
     normals: impl Fn(u32) -> Vec3,
 ) -> Vec<[u32; 2]> {
     // Edges, and which of their ends is there.
-    let ends = ByParticle::new(rest.len(), || {
+    let ends = Grouped::new(rest.len(), || {
         let edges = (0_u32..).zip(edges);
         edges.flat_map(|(edge, [a, b])| [(*a, (edge, 0_usize)), (*b, (edge, 1))])
     });

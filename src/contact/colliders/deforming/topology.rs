@@ -5,7 +5,7 @@ use std::ops::Range;
 #[cfg(feature = "mesh")]
 use bevy::math::Vec3;
 
-use crate::cloth::ByParticle;
+use crate::cloth::Grouped;
 #[cfg(feature = "mesh")]
 use crate::contact::colliders::geometry::{MeshEdges, volume};
 
@@ -26,7 +26,7 @@ pub(crate) struct Topology {
     /// The nodes of the tree, each before those below it.
     pub(super) nodes: Vec<Node>,
     /// The faces of each vertex.
-    pub(super) around: ByParticle<u32>,
+    pub(super) around: Grouped<u32>,
 }
 
 /// A node of the tree. Its first child follows it.
@@ -109,6 +109,6 @@ impl Topology {
             let faces = (0..).zip(&self.triangles);
             faces.flat_map(|(face, corners)| corners.map(|corner| (corner, face)))
         };
-        self.around = ByParticle::new(vertices, corners);
+        self.around = Grouped::new(vertices, corners);
     }
 }

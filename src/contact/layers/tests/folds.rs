@@ -1,25 +1,31 @@
 //! Neighbouring patches that are proved apart cannot touch.
 
-use std::{collections::HashMap, f32::consts::TAU, sync::Arc};
+use std::{
+    collections::{HashMap, HashSet},
+    f32::consts::TAU,
+    sync::Arc,
+};
 
 use bevy::math::{DVec3, Vec3, Vec3A, Vec3Swizzles};
 
 use super::{
-    Sheeted,
-    search::{Feature, ROUNDING, distance, named, shapes},
+    Sheeted, participants,
+    search::{Brute, Feature, ROUNDING, distance, named, places, shapes},
+    settings,
     thrown::Draw,
+    torn::rolled,
 };
 use crate::{
     cloth::{Cloth, Surface, TriangleMesh},
-    contact::layers::{bounds::Bounds, flattened::Scratch, sheet::Sheet},
+    contact::layers::{MutualContact, bounds::Bounds, flattened::Scratch, sheet::Sheet},
     hierarchy::QuadTree,
 };
 
 /// Distance at which features touch, as a fraction of that at rest.
 const OF_REST: f32 = 0.5;
 
-/// A lower bound of the distance of features without a common particle in a window, and of what it is more than that at which they
-/// touch at this thickness (m).
+/// Lower bounds of the distance of features without a common particle in a window, and of how far they are from touching at this
+/// thickness (m).
 fn bounds(sheet: &Sheet, window: usize, places: &[Vec3A], thickness: f32) -> Option<[f32; 2]> {
     let flattened = sheet.windows().flattened(window)?;
     let unfolded = flattened.unfolded(places, &mut Scratch::default());
@@ -148,8 +154,8 @@ fn long_sheets_are_proved_flat() {
     }
 }
 
-/// All patches that share a particle are neighbours, and windows are laid flat but for those at a border that is not convex, as all borders
-/// of the irregular mesh are.
+/// All patches that share a particle are neighbours. Windows are laid flat but for those at a border that is not convex, as those of the
+/// irregular mesh are not.
 #[test]
 fn patches_that_share_a_particle_are_neighbours() {
     for (name, surface) in surfaces() {
@@ -164,7 +170,7 @@ fn patches_that_share_a_particle_are_neighbours() {
                     let (_, patches) = sheet.windows().patches_in(*window as usize);
                     patches.contains(&a) && patches.contains(&b)
                 };
-                let windows = pair.map(|pair| sheet.windows().with(pair));
+                let windows = pair.map(|pair| sheet.windows().with_pair(pair));
                 assert!(windows.is_none_or(|of| !of.is_empty() && of.iter().all(has_both)));
             }
         }
@@ -173,12 +179,12 @@ fn patches_that_share_a_particle_are_neighbours() {
             .clone()
             .filter(|&of| sheet.windows().flattened(of).is_some());
         let part = laid.count() as f32 / windows.len() as f32;
+        println!("{name}: {part}");
         assert!(part > 0.25, "{name}: {part} of the windows are laid flat");
     }
 }
 
-/// Whatever a surface is bent into, no two features of two patches are nearer than the bound says, but for features with a
-/// common particle. None is nearer to touching than the slack says. Distances are in f64, by brute force.
+/// Bent into anything, no two features of two patches are nearer than the bound says, but for those with a common particle. None is nearer to touching than the slack says. Distances are in f64, by brute force.
 #[test]
 fn what_is_hardly_bent_keeps_its_features_apart() {
     const DRAWN: u32 = 12;
@@ -250,4 +256,66 @@ fn what_is_hardly_bent_keeps_its_features_apart() {
         assert!(*count > 40, "{name}: {count}");
     }
     assert_eq!(bounded.len(), 5);
+}
+
+/// A roll that closes and opens again, in many ticks, after a cloth that does not touch itself: all that is near is a contact. Windows
+/// fold and unfold, what they use is measured from zero in each tick, and those of the other cloth stand before them.
+#[test]
+fn what_folds_and_unfolds_is_found() {
+    const STEPS: usize = 150;
+    let thickness = 0.03;
+    for is_mesh in [false, true] {
+        let first = Sheeted::of_kind(6, 0.5, !is_mesh, |at| at + 3.0 * Vec3::Y);
+        let before = first.particles.len() as u32;
+        let mut cloths = vec![first, Sheeted::of_kind(9, 1.0, is_mesh, |at| at)];
+        let brute = Brute::new(&cloths[1]);
+        let rest: Vec<Vec3> = cloths[1].particles.positions().collect();
+        let mut contact = MutualContact::default();
+        let (mut met, mut pairs) = (0, Vec::new());
+        for step in 0..STEPS {
+            let time = 0.5 - 0.5 * (6.0 * TAU * step as f32 / (2 * STEPS) as f32).cos();
+            for (index, at) in rest.iter().enumerate() {
+                let set = cloths[1].particles.set_position(index, rolled(*at, time));
+                set.expect("it exists");
+            }
+            let mut of = participants(&mut cloths, settings(thickness));
+            of[0].settings.with_itself = false;
+            if step == 0 {
+                contact.begin(&of, |_, _| true);
+                continue;
+            }
+            if step % 4 == 0 {
+                contact.near.begin_tick(&of, &mut contact.motion);
+            }
+            contact.counts.work = usize::MAX;
+            contact.motion.read(&of);
+            contact.motion.measure_all();
+            contact.motion.measure(&of);
+            contact.look(&of, |_, _| true).expect("not too much work");
+            let mut contacts = HashSet::new();
+            contact.near.contacts(&contact.motion, |candidate, _, _| {
+                let of = candidate.particles.map(|particle| particle - before);
+                let (first, second) = of.split_at(candidate.split as usize);
+                contacts.insert(named(first, second));
+            });
+            contact.motion.pass(&of, 0.05 * thickness);
+            contact.near.pass(&of, &contact.motion);
+            pairs.push(contact.pairs());
+            let reach = f64::from(thickness) - ROUNDING;
+            brute.near(&places(&cloths[1]), reach, |feature, apart| {
+                met += 1;
+                let is_known = contacts.contains(&feature);
+                assert!(
+                    is_known,
+                    "step {step}, mesh {is_mesh}: {feature:?}, {apart} m"
+                );
+            });
+        }
+        assert!(met > 0, "something meets");
+        let closed = pairs
+            .windows(2)
+            .filter(|of| of[0] == 0 && of[1] > 0)
+            .count();
+        assert!(closed > 1, "it closes {closed} times");
+    }
 }

@@ -8,8 +8,8 @@ use crate::contact::layers::{
     patch_pair::{PatchPair, Place},
 };
 
-/// Particles that move at random, and some of which are put elsewhere twice: no two of two patches come nearer than the bound
-/// says, and each patch is as if all had been measured.
+/// Particles move at random, and some are put elsewhere twice. No two of two patches come nearer than the bound says, and each patch is
+/// as if all had been measured.
 #[test]
 fn particles_come_no_nearer_than_their_bound() {
     let mut draw = Draw(5);

@@ -37,7 +37,7 @@ fn torn(side: u32, is_mesh: bool, part: f32, draw: &mut Draw) -> Sheeted {
 }
 
 /// A place of a roll that closes (m).
-fn rolled(at: Vec3, time: f32) -> Vec3 {
+pub(super) fn rolled(at: Vec3, time: f32) -> Vec3 {
     let turns = (9.0 * time).max(0.01);
     let (sin, cos) = (turns * at.z).sin_cos();
     let radius = (1.0 + 0.1 * at.z) / turns;
