@@ -179,8 +179,14 @@ fn patches_that_share_a_particle_are_neighbours() {
             .clone()
             .filter(|&of| sheet.windows().flattened(of).is_some());
         let part = laid.count() as f32 / windows.len() as f32;
-        println!("{name}: {part}");
-        assert!(part > 0.25, "{name}: {part} of the windows are laid flat");
+        let least = match name {
+            "grid" => 1.0,
+            "torn" => 0.58,
+            "tube" => 0.5,
+            "bay" => 0.35,
+            _ => 0.3,
+        };
+        assert!(part >= least, "{name}: {part} of the windows are laid flat");
     }
 }
 
@@ -271,7 +277,7 @@ fn what_folds_and_unfolds_is_found() {
         let brute = Brute::new(&cloths[1]);
         let rest: Vec<Vec3> = cloths[1].particles.positions().collect();
         let mut contact = MutualContact::default();
-        let (mut met, mut pairs) = (0, Vec::new());
+        let (mut near, mut pairs) = (Vec::new(), Vec::new());
         for step in 0..STEPS {
             let time = 0.5 - 0.5 * (6.0 * TAU * step as f32 / (2 * STEPS) as f32).cos();
             for (index, at) in rest.iter().enumerate() {
@@ -301,6 +307,7 @@ fn what_folds_and_unfolds_is_found() {
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             pairs.push(contact.pairs());
+            let mut met = 0;
             let reach = f64::from(thickness) - ROUNDING;
             brute.near(&places(&cloths[1]), reach, |feature, apart| {
                 met += 1;
@@ -310,12 +317,13 @@ fn what_folds_and_unfolds_is_found() {
                     "step {step}, mesh {is_mesh}: {feature:?}, {apart} m"
                 );
             });
+            near.push(met);
         }
-        assert!(met > 0, "something meets");
-        let closed = pairs
-            .windows(2)
-            .filter(|of| of[0] == 0 && of[1] > 0)
-            .count();
-        assert!(closed > 1, "it closes {closed} times");
+        let closed = near.windows(2).filter(|of| of[0] == 0 && of[1] > 0);
+        assert_eq!(closed.count(), 3, "it closes three times");
+        // Once it is open again, hardly anything is listed.
+        let open = pairs[STEPS / 3 - 2..][..4].iter().min();
+        let most = pairs.iter().max();
+        assert!(open.zip(most).is_some_and(|(open, most)| 4 * open < *most));
     }
 }
