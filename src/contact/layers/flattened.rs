@@ -49,24 +49,16 @@ pub(super) struct EightFaces {
 }
 
 /// Memory of a measurement, to be used again.
-#[derive(Debug, Clone)]
+#[derive(Debug, Default, Clone)]
 pub(super) struct Scratch {
-    places: Box<[Vec3A; MOST_PARTICLES]>,
+    places: Vec<Vec3A>,
     gradients: Vec<[Eight; 6]>,
-}
-
-impl Default for Scratch {
-    fn default() -> Self {
-        Self {
-            places: Box::new([Vec3A::ZERO; MOST_PARTICLES]),
-            gradients: Vec::new(),
-        }
-    }
 }
 
 impl Flattened {
     /// λ: a lower bound of the ratio of any two points' distance to that in the plane; 0 or less where they may meet.
     pub fn unfolded(&self, places: &[Vec3A], scratch: &mut Scratch) -> f32 {
+        scratch.places.resize(MOST_PARTICLES, Vec3A::ZERO);
         for (at, &particle) in scratch.places.iter_mut().zip(&self.particles) {
             *at = places[particle as usize];
         }
@@ -90,30 +82,14 @@ impl Flattened {
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
 fn least_eigenvalue(faces: &[EightFaces], scratch: &mut Scratch) -> f32 {
     let Scratch { places, gradients } = scratch;
+    let Some(places) = places.first_chunk() else {
+        return f32::NEG_INFINITY;
+    };
     gradients.clear();
     let mut low = [[f32::INFINITY; 8]; 6];
     let mut high = [[f32::NEG_INFINITY; 8]; 6];
     for eight in faces {
-        let mut edges = [[0.0; 8]; 6];
-        for l in 0..8 {
-            let [a, b, c] = eight
-                .corners
-                .map_inline(|corner| places[usize::from(corner[l])]);
-            let (first, second) = ((b - a).to_array(), (c - a).to_array());
-            for axis in 0..3 {
-                edges[axis][l] = first[axis];
-                edges[3 + axis][l] = second[axis];
-            }
-        }
-        let inverse = &eight.inverse;
-        let mut gradient = [[0.0; 8]; 6];
-        for axis in 0..3 {
-            for l in 0..8 {
-                let (first, second) = (edges[axis][l], edges[3 + axis][l]);
-                gradient[axis][l] = first * inverse[0][l] + second * inverse[1][l];
-                gradient[3 + axis][l] = first * inverse[2][l] + second * inverse[3][l];
-            }
-        }
+        let gradient = gradient(eight, places);
         for of in 0..6 {
             for l in 0..8 {
                 let number = gradient[of][l];
@@ -168,6 +144,30 @@ fn least_eigenvalue(faces: &[EightFaces], scratch: &mut Scratch) -> f32 {
     let each = low.iter().chain(&high).flatten();
     let largest = each.fold(0.0_f32, |most, of| most.max(of.abs()));
     least.into_iter().fold(f32::INFINITY, f32::min) - ROUNDING * largest
+}
+
+/// The gradients of eight faces: the two columns of F, by axis.
+#[inline(always)]
+fn gradient(eight: &EightFaces, places: &[Vec3A; MOST_PARTICLES]) -> [Eight; 6] {
+    let mut edges = [[0.0; 8]; 6];
+    for l in 0..8 {
+        let [a, b, c] = (eight.corners).map_inline(|corner| places[usize::from(corner[l])]);
+        let (first, second) = ((b - a).to_array(), (c - a).to_array());
+        for axis in 0..3 {
+            edges[axis][l] = first[axis];
+            edges[3 + axis][l] = second[axis];
+        }
+    }
+    let inverse = &eight.inverse;
+    let mut gradient = [[0.0; 8]; 6];
+    for axis in 0..3 {
+        for l in 0..8 {
+            let (first, second) = (edges[axis][l], edges[3 + axis][l]);
+            gradient[axis][l] = first * inverse[0][l] + second * inverse[1][l];
+            gradient[3 + axis][l] = first * inverse[2][l] + second * inverse[3][l];
+        }
+    }
+    gradient
 }
 
 /// The rotation of two columns, F (FᵀF)^(−1/2); `None` if one is zero. Its columns are orthonormal, however F rounds where it is nearly

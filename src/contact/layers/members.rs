@@ -5,6 +5,9 @@ use bevy::math::Vec3A;
 use super::{mean_pushes::MeanPushes, motion::Motion, origin::Origin, participant::Participant};
 use crate::cloth::{MapInline, Slot};
 
+/// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
+const RESTING_SPEED: f32 = 0.25;
+
 /// No member, no pair.
 pub(super) const NOBODY: u32 = u32::MAX;
 
@@ -175,9 +178,9 @@ impl Members {
         of.map_inline(|member| &self.states[member as usize])
     }
 
-    /// Whether none moved farther than this (m), and a collider or a pin holds some.
-    pub fn are_resting(&self, farthest: f32) -> bool {
-        let square = farthest * farthest;
+    /// Whether all are slow in a sub-step of `dt` (s), and a collider or a pin holds some.
+    pub fn are_resting(&self, dt: f32) -> bool {
+        let square = (RESTING_SPEED * dt).powi(2);
         let is_slow = |state: &State| state.moved.length_squared() <= square;
         self.states
             .iter()

@@ -18,8 +18,8 @@
 //! 2. Of two patches whose boxes overlap, features that are not listed were farther apart than a thickness by at least
 //!    the pair's slack. No two points of them have come nearer by more than the pair has [used](motion). While that is
 //!    less, they are a thickness apart.
-//! 3. Neighbouring patches are apart, whatever their motion was, while a [projection](flattened) of their faces onto a plane keeps
-//!    all points apart there ([folds]). It proves bends of nearly a right angle to either side, less what the thickness takes.
+//! 3. Neighbouring patches are apart, whatever their motion was, while a [projection](flattened) onto a plane keeps all points apart
+//!    there ([folds]): in bends of nearly a right angle to either side, less what the thickness takes.
 //! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
 //!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
 //!    it has not passed, or it is stopped.
@@ -91,9 +91,6 @@ const MOST_SUBSTEPS: f32 = 16.0;
 const MOST_STOPPED: u32 = 8;
 const TICKS_OFF: u32 = 8;
 
-/// Only particles slower than this are held (m/s): a hold takes momentum, so only resting layers are held.
-const RESTING_SPEED: f32 = 0.25;
-
 /// Deviation of a patch from its reference, as a fraction of the smallest thickness, from which on it gets a new one.
 const REFERENCE: f32 = 0.05;
 
@@ -139,9 +136,7 @@ impl MutualContact {
         if !was_lost {
             self.stopped = 0;
         }
-        let particles = cloths.iter().map(|cloth| cloth.particles.len());
-        let particles = particles.sum::<usize>();
-        self.counts = Counts::new(particles);
+        self.counts = Counts::new(cloths.iter().map(|cloth| cloth.particles.len()).sum());
         let is_same = self.circumstances.renew(cloths, &meets);
         if is_same && self.ticks_off > 0 {
             self.ticks_off -= 1;
@@ -186,7 +181,6 @@ impl MutualContact {
             Some(free) => self.last.free = free,
             None => self.lose(),
         }
-        self.near.begins = false;
         self.near.pass(cloths, &self.motion);
         self.tighten();
     }
@@ -282,7 +276,7 @@ impl MutualContact {
         self.near.pass(cloths, &self.motion);
         self.last.reserve = 0.0;
         if !self.contacts.pairs.is_empty() {
-            let are_resting = self.members.are_resting(RESTING_SPEED * dt);
+            let are_resting = self.members.are_resting(dt);
             self.last.hold(thinnest, pace, are_resting);
         }
         self.last.pass(cloths);

@@ -176,8 +176,9 @@ impl NearFeatures {
         }
     }
 
-    /// Ends the sub-step.
+    /// Ends the sub-step, or the first look.
     pub fn pass(&mut self, cloths: &[Participant], motion: &Motion) {
+        self.begins = false;
         self.folds.pass(cloths, motion);
     }
 

@@ -167,13 +167,13 @@ fn what_is_wrong_with_a_snapshot_is_said() {
     let (_, one) = saved.cloths().next().expect("a cloth");
     let error = one.restore(app.world_mut(), nobody).expect_err("no cloth");
     assert_eq!(error, SnapshotError::NoCloth { entity: nobody });
-    let newer = text.replacen("version:9", "version:10", 1);
+    let newer = text.replacen("version:10", "version:11", 1);
     let newer: ClothWorldSnapshot = ron::from_str(&newer).expect("it can be read");
     let error = newer.restore(app.world_mut()).expect_err("a newer one");
     assert_eq!(
         error,
         SnapshotError::Version {
-            found: 10,
+            found: 11,
             expected: 9
         }
     );
