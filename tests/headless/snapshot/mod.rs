@@ -174,7 +174,7 @@ fn what_is_wrong_with_a_snapshot_is_said() {
         error,
         SnapshotError::Version {
             found: 11,
-            expected: 9
+            expected: 10
         }
     );
     // A particle that there is not: of what is attached, and of what touches.
