@@ -1,10 +1,10 @@
 //! Forces of a game on the particles of a cloth, besides gravity.
 //!
 //! [`Forces`] alone knows all of them; what calls it names none. Each is a file here, and a field of [`ForceInputs`]. After
-//! the air it adds to [`LinearForce::push`] of all particles but pins. Chains and soft springs, grids and meshes, one
+//! the air it adds to `LinearForce::push` of all particles but pins. Chains and soft springs, grids and meshes, one
 //! thread and many apply the sum. Its impulse and the motion of the centre of mass follow from it.
 //!
-//! **Steps.** Forces are evaluated a few times per tick ([`LONGEST`]), whatever the sub-steps. In between, each sub-step
+//! **Steps.** Forces are evaluated a few times per tick (`LONGEST`), whatever the sub-steps. In between, each sub-step
 //! follows the sum along its slope over the particle's velocity. A force that changes much within 10 ms, as a stiff one
 //! does, is evaluated in each sub-step.
 
