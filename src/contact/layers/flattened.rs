@@ -9,8 +9,8 @@ use crate::cloth::MapInline;
 /// Most particles of a window.
 pub(super) const MOST_PARTICLES: usize = 256;
 
-/// Part by which a bound is lowered: more than the rounding errors, and than what is missing at a border.
-const ROUNDING: f32 = 1.0e-3;
+/// Part of the largest gradient by which a bound is lowered: more than the rounding errors, and than what is missing at a border.
+pub(super) const LOWERED: f32 = 5.0e-3;
 
 /// A part of a surface, projected at rest onto its plane. Its faces cover the convex hull of its points there, each
 /// point once.
@@ -66,7 +66,8 @@ impl Flattened {
     }
 
     /// A lower bound of the distance of any two features without a common particle, less that at which they touch (m), from
-    /// [λ](Self::unfolded); any number below 0 where they may touch. They touch at the `thickness`, or at a part `of_rest` of their distance at rest if that is less.
+    /// [λ](Self::unfolded); any number below 0 where they may touch. They touch at the `thickness`, or at a part `of_rest` of their
+    /// distance at rest if that is less.
     pub fn slack(&self, unfolded: f32, thickness: f32, of_rest: f32) -> f32 {
         let of_rest = of_rest * self.ratio;
         let allowed = thickness.min(of_rest * self.closest);
@@ -138,12 +139,12 @@ fn least_eigenvalue(faces: &[EightFaces], scratch: &mut Scratch) -> f32 {
     }
     let sum = sums.iter().sum::<f32>();
     if !sum.is_finite() {
-        // Also without faces, and for NaN, which comparisons pass over.
+        // NaN, which comparisons pass over.
         return f32::NEG_INFINITY;
     }
     let each = low.iter().chain(&high).flatten();
     let largest = each.fold(0.0_f32, |most, of| most.max(of.abs()));
-    least.into_iter().fold(f32::INFINITY, f32::min) - ROUNDING * largest
+    least.into_iter().fold(f32::INFINITY, f32::min) - LOWERED * largest
 }
 
 /// The gradients of eight faces: the two columns of F, by axis.

@@ -4,16 +4,19 @@ use std::ops::Range;
 
 use bevy::math::{Vec2, Vec3};
 
-use super::flattened::{EightFaces, Flattened, MOST_PARTICLES};
+use super::flattened::{EightFaces, Flattened, LOWERED, MOST_PARTICLES};
 use crate::cloth::{Grouped, Surface};
 
 /// Faces that leave the plane by more than the angle of this cosine are not laid flat.
 const LEAST_COSINE: f32 = 2.0 / 3.0;
 
-/// Part of a window's size by which what is missing at its border does not count. No face may be lower than this multiple of that: then
-/// a line that leaves the faces there is longer by less than the rounding that bounds allow for.
+/// Part of a window's size by which what is missing at its border does not count.
 const BORDER: f32 = 1.0e-5;
-const LOWEST: f32 = 100.0;
+
+/// No face may be lower than this multiple of what is missing. A line that goes around it is off by that much to the side, past some two
+/// faces, whose gradients differ by twice the largest: four times, and as much again for the norm of a gradient over its numbers. So the
+/// bound of a line, as long as a face is high, falls by less than it is [lowered](LOWERED).
+const LOWEST: f32 = 10.0 / LOWERED;
 
 /// Most faces of a window: Euler's two for each particle.
 const MOST_FACES: usize = 2 * MOST_PARTICLES;
