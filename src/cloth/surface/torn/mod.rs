@@ -11,8 +11,8 @@
 //!   o───o───o          o───o───o
 //! ```
 //!
-//! At rest they are apart by a fiftieth of the way to their faces' middles. Where the cloth collides with itself, they are moved apart
-//! by as much: so layers know which side each is on.
+//! At rest [each is moved](parted) away from the torn edge by a fiftieth of a face's size. Where the cloth collides with itself,
+//! it is moved by as much there: so layers know which side each is on.
 //!
 //! Particles keep their indices, and new ones follow in the order in which edges were torn. So whoever knows a particle by
 //! its index knows it after the next tear, too. A particle's mass and area are shared out by its faces, and nothing is lost.
@@ -20,6 +20,7 @@
 //! Search and contact need no rule of their own. Their bounds are measured along the springs that are left: they are built
 //! from the torn surface as from any mesh.
 
+mod parted;
 mod split;
 mod springs;
 mod stencils;
@@ -41,9 +42,6 @@ use super::{
     triangles::VertexAttribute,
 };
 use crate::cloth::grid::ClothGrid;
-
-/// How far a cut moves its sides apart, each, as a fraction of the way to the middle of the faces beside it.
-const HALF_WIDTH: f32 = 0.02;
 
 /// The reason why a cloth can't be torn.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
@@ -138,34 +136,6 @@ impl Surface {
             (origin, *face)
         };
         faces.map(by_origin).collect()
-    }
-
-    /// The places of all particles (m), with a little room between those that have one parent: a cut has a width. So contact of
-    /// cloth with cloth knows which side each is on.
-    pub(crate) fn parted(&self, places: &[Vec3], parent: impl Fn(u32) -> u32) -> Vec<Vec3> {
-        // A surface that is mended has fewer particles than their parents were.
-        let parents = || (0..self.len() as u32).map(|child| parent(child) as usize);
-        let mut children = vec![0_u32; parents().max().map_or(0, |last| last + 1)];
-        parents().for_each(|parent| children[parent] += 1);
-        let mut sums = vec![(Vec3::ZERO, 0.0); self.len()];
-        for face in self.triangles() {
-            let middle = face
-                .iter()
-                .map(|corner| places[*corner as usize])
-                .sum::<Vec3>()
-                / 3.0;
-            for corner in face {
-                let (sum, count) = &mut sums[*corner as usize];
-                (*sum, *count) = (*sum + middle, *count + 1.0);
-            }
-        }
-        let apart = |(child, (sum, count)): (usize, (Vec3, f32))| match children
-            [parent(child as u32) as usize]
-        {
-            0 | 1 => places[child],
-            _ => places[child].lerp(sum / count, HALF_WIDTH),
-        };
-        sums.into_iter().enumerate().map(apart).collect()
     }
 
     /// Whether a path along edges leads from one face to another, not much longer than the way between them at rest.
