@@ -115,7 +115,7 @@ fn motion(particles: &ClothParticles) -> (f64, [DVec3; 2]) {
 
 /// Soft cloth without damping flies through empty space, turns, and is cut twice through its middle. As a cut opens, each particle has the
 /// velocity and place of the one that it was, to the bit. Older particles keep their indices. Of cloth that collides with itself, a cut moves
-/// a particle by at most `room`. That is a fiftieth of the way to the middle of faces beside it, `HALF_WIDTH` of `cloth/surface/torn`, which is
+/// a particle by at most `room`. That is a fiftieth of the way to the middle of faces beside it, `HALF_WIDTH` of `cloth/surface/torn/parted`, which is
 /// shorter than their longest side.
 ///
 /// Mass and momentum stay: areas of parts add up within 10⁻⁶, and floats round their masses by less. Speeds are less than 4 m/s,

@@ -5,7 +5,7 @@ use super::{origin::Origin, participant::Participant};
 /// While the approach of particles is less than this fraction of the thickness, pushed particles are held by the mean
 /// of their last pushes, for this many sub-steps at most, and this fraction of the way.
 const HELD: f32 = 0.08;
-const LONGEST_HOLD: u32 = 3;
+const LONGEST_HOLD: u32 = 8;
 const PART_OF_WAY: f32 = 0.5;
 
 /// The last sub-step in which pairs were tested.
