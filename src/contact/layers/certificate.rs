@@ -166,7 +166,7 @@ impl Zones {
 /// The missing distance to a plane between two features (m), if there is none.
 #[inline]
 fn lack(pair: &NearPair, members: &Members) -> Option<f32> {
-    let distance = pair.distance;
+    let distance = pair.nearest.distance;
     if distance <= MET {
         return None;
     }
@@ -178,7 +178,7 @@ fn lack(pair: &NearPair, members: &Members) -> Option<f32> {
 
 /// Pushes apart the two particles, one of each feature, that are farthest beyond the plane.
 fn part(pair: &NearPair, lack: f32, members: &mut Members) {
-    let normal = pair.normal;
+    let normal = pair.nearest.normal;
     let states = members.states(pair.members);
     let along = states.map_inline(|state| normal.dot(state.place));
     let first = (0..pair.split).min_by(|&a, &b| along[a].total_cmp(&along[b]));

@@ -50,6 +50,7 @@ pub(super) fn compare(
         spacing,
         used,
         reserve,
+        ..
     } = *place;
     let [a, b] = pair.of.map_inline(|patch| &motion.patches[patch as usize]);
     let ahead = (AHEAD * used)

@@ -1,14 +1,12 @@
 //! The listed pairs of features that may touch in a sub-step.
 
 use super::{
-    certificate::LEFT_OF_THICKNESS,
     members::{Members, NOBODY},
     motion::Motion,
     near_features::NearFeatures,
     origin::Origin,
-    pair::{NearPair, VERTEX_AND_FACE},
+    pair::NearPair,
     participant::Participant,
-    patch_pair::Candidate,
     work::Counts,
 };
 use crate::cloth::MapInline;
@@ -20,10 +18,24 @@ pub(super) struct Contacts {
     pub pairs: Vec<NearPair>,
     /// Those that overlap by more than layers at rest.
     pub overlapping: Vec<u32>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    near: Vec<Near>,
+    /// Of each particle the last pair with it as its vertex, among the near ones.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    last_of: Vec<u32>,
+}
+
+/// Two features that may touch: their place among all listed ones, their cloths, and the previous ones with the same vertex.
+#[derive(Debug, Clone, Copy)]
+struct Near {
+    candidate: u32,
+    cloths: [u32; 2],
+    before: u32,
 }
 
 impl Contacts {
-    /// Lists them anew. `before` has the positions before colliders pushed.
+    /// Lists them anew, but for faces from which a nearer one keeps a vertex away. `before` has the positions before
+    /// colliders pushed.
     pub fn list(
         &mut self,
         near: &mut NearFeatures,
@@ -31,69 +43,54 @@ impl Contacts {
         motion: &Motion,
         members: &mut Members,
         before: &Origin,
+        counts: &mut Counts,
     ) {
-        members.last_of.fill(NOBODY);
-        self.pairs.clear();
         near.has_changed = false;
-        let add = |candidate: &Candidate, of: [u32; 2], near: f32| {
-            let particles = candidate.particles;
-            let members_of =
-                particles.map_inline(|particle| members.of(particle, cloths, motion, before));
-            let split = candidate.split as usize;
-            let nearest = candidate.nearest;
-            let [a, b] = of.map_inline(|cloth| cloths[cloth as usize].settings.friction);
-            // Strands side by side are nearest at ends of edges. No vertex and face push them.
-            let is_of_rope = of
-                .iter()
-                .any(|cloth| cloths[*cloth as usize].sheet.is_rope());
+        self.pairs.clear();
+        self.near.clear();
+        self.last_of.clear();
+        self.last_of.resize(motion.end.len(), NOBODY);
+        for (index, cloths) in near.contacts(motion) {
+            let candidate = near.candidate(index);
             let mut before = NOBODY;
-            if split == VERTEX_AND_FACE {
-                let last = &mut members.last_of[members_of[0] as usize];
-                before = std::mem::replace(last, self.pairs.len() as u32);
+            if candidate.is_vertex_with_face() {
+                let last = &mut self.last_of[candidate.particles[0] as usize];
+                before = std::mem::replace(last, self.near.len() as u32);
             }
-            self.pairs.push(NearPair {
-                members: members_of,
-                split,
-                thickness: candidate.thickness,
-                friction: (a * b).sqrt(),
-                distance: nearest.distance,
-                normal: nearest.normal,
-                weights: nearest.weights,
-                is_pushed: split == VERTEX_AND_FACE || is_of_rope || !nearest.is_at_border(),
+            self.near.push(Near {
+                candidate: index,
+                cloths,
                 before,
-                may_pass: candidate.nearest.distance
-                    <= near + LEFT_OF_THICKNESS * candidate.thickness,
             });
-        };
-        near.contacts(motion, add);
-    }
-
-    /// Marks the faces from which a nearer face already keeps a vertex away: the nearest point is on an edge of both.
-    pub fn leave_out_implied(&mut self, members: &Members, counts: &mut Counts) {
-        for index in 0..self.pairs.len() {
-            let pair = &self.pairs[index];
-            if pair.split != VERTEX_AND_FACE || pair.weights.iter().all(|&weight| weight != 0.0) {
+        }
+        for (index, of) in (0..).zip(&self.near) {
+            let candidate = near.candidate(of.candidate);
+            let mut is_implied = false;
+            if candidate.may_be_implied() {
+                let mut next = self.last_of[candidate.particles[0] as usize];
+                while next != NOBODY && !is_implied && counts.work > 0 {
+                    let other = &self.near[next as usize];
+                    counts.take(1);
+                    is_implied = next != index
+                        && candidate.is_implied_by(near.candidate(other.candidate), next < index);
+                    next = other.before;
+                }
+            }
+            let is_pushed = candidate.is_pushed && !is_implied;
+            if !is_pushed && !candidate.may_pass {
                 continue;
             }
-            let mut next = members.last_of[pair.members[0] as usize];
-            let mut is_implied = false;
-            while next != NOBODY && !is_implied && counts.work > 0 {
-                let other = &self.pairs[next as usize];
-                let is_nearer = other.distance < pair.distance
-                    || (other.distance == pair.distance && (next as usize) < index);
-                let has = |corner: usize| {
-                    pair.weights[corner] == 0.0
-                        || other.members[1..].contains(&pair.members[corner])
-                };
-                counts.take(1);
-                is_implied = next as usize != index
-                    && other.thickness >= pair.thickness
-                    && is_nearer
-                    && (1..4).all(has);
-                next = other.before;
-            }
-            self.pairs[index].is_pushed &= !is_implied;
+            let particles = candidate.particles;
+            let [a, b] = (of.cloths).map_inline(|cloth| cloths[cloth as usize].settings.friction);
+            self.pairs.push(NearPair {
+                members: particles
+                    .map_inline(|particle| members.of(particle, cloths, motion, before)),
+                split: candidate.split as usize,
+                thickness: candidate.thickness,
+                friction: (a * b).sqrt(),
+                nearest: candidate.nearest,
+                is_pushed,
+            });
         }
-        self.pairs.retain(|pair| pair.is_pushed || pair.may_pass);
     }
 }

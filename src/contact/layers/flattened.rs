@@ -4,7 +4,10 @@ use bevy::math::{Vec3, Vec3A};
 use multiversion::multiversion;
 
 use super::lanes::Eight;
-use crate::cloth::MapInline;
+use crate::{
+    cloth::MapInline,
+    contact::friction::{larger, smaller},
+};
 
 /// Most particles of a window.
 pub(super) const MOST_PARTICLES: usize = 256;
@@ -94,16 +97,8 @@ fn least_eigenvalue(faces: &[EightFaces], scratch: &mut Scratch) -> f32 {
         for of in 0..6 {
             for l in 0..8 {
                 let number = gradient[of][l];
-                low[of][l] = if number < low[of][l] {
-                    number
-                } else {
-                    low[of][l]
-                };
-                high[of][l] = if number > high[of][l] {
-                    number
-                } else {
-                    high[of][l]
-                };
+                low[of][l] = smaller(number, low[of][l]);
+                high[of][l] = larger(number, high[of][l]);
             }
         }
         gradients.push(gradient);
@@ -133,7 +128,7 @@ fn least_eigenvalue(faces: &[EightFaces], scratch: &mut Scratch) -> f32 {
             let mixed = 0.5 * (dot(&first, 3) + dot(&second, 0));
             let half = 0.5 * (a - d);
             let number = 0.5 * (a + d) - (half * half + mixed * mixed).sqrt();
-            least[l] = if number < least[l] { number } else { least[l] };
+            least[l] = smaller(number, least[l]);
             sums[l] += number;
         }
     }

@@ -3,149 +3,17 @@
 //! Rounded a little differently than those of [`Nearest`](super::pair::Nearest): good enough to tell which pairs to
 //! list, not for their contact.
 
-use std::ops::{Add, Mul, Sub};
-
+use bevy::math::Vec3;
 use multiversion::multiversion;
 
 use super::bounds::Bounds;
-use crate::cloth::MapInline;
+use crate::contact::friction::{larger, smaller};
 
 /// Eight numbers.
-#[derive(Debug, Clone, Copy)]
-struct Lanes(Eight);
-
 pub(super) type Eight = [f32; 8];
 
 /// The points of eight features, by axis.
 pub(super) type Points = [Eight; 3];
-
-macro_rules! operator {
-    ($trait:ident, $function:ident, $symbol:tt) => {
-        impl $trait for Lanes {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $function(mut self, other: Self) -> Self {
-                for l in 0..8 {
-                    self.0[l] $symbol other.0[l];
-                }
-                self
-            }
-        }
-    };
-}
-
-operator!(Add, add, +=);
-operator!(Sub, sub, -=);
-operator!(Mul, mul, *=);
-
-impl Lanes {
-    #[inline(always)]
-    fn all(number: f32) -> Self {
-        Self([number; 8])
-    }
-
-    /// The reciprocals, or 0 for 0.
-    #[inline(always)]
-    fn inverse(mut self) -> Self {
-        for l in 0..8 {
-            let inverse = 1.0 / self.0[l];
-            self.0[l] = if self.0[l] > 0.0 { inverse } else { 0.0 };
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn clamped(mut self) -> Self {
-        for l in 0..8 {
-            let least = if self.0[l] > 0.0 { self.0[l] } else { 0.0 };
-            self.0[l] = if least < 1.0 { least } else { 1.0 };
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn min(mut self, other: Self) -> Self {
-        for l in 0..8 {
-            let is_less = other.0[l] < self.0[l];
-            self.0[l] = if is_less { other.0[l] } else { self.0[l] };
-        }
-        self
-    }
-
-    #[inline(always)]
-    fn max(mut self, other: Self) -> Self {
-        for l in 0..8 {
-            let is_more = other.0[l] > self.0[l];
-            self.0[l] = if is_more { other.0[l] } else { self.0[l] };
-        }
-        self
-    }
-
-    /// These where they are greater than `far`, infinity elsewhere, also for NaN.
-    #[inline(always)]
-    fn beyond(mut self, far: f32) -> Self {
-        for l in 0..8 {
-            let is_far = self.0[l] > far;
-            self.0[l] = if is_far { self.0[l] } else { f32::INFINITY };
-        }
-        self
-    }
-
-    /// Whether all are greater than `far`.
-    #[inline(always)]
-    fn are_beyond(&self, far: f32) -> bool {
-        self.0
-            .iter()
-            .fold(true, |all, number| all & (*number > far))
-    }
-
-    /// These where `of` is not negative, `others` elsewhere.
-    #[inline(always)]
-    fn where_positive(mut self, of: Self, others: Self) -> Self {
-        for l in 0..8 {
-            self.0[l] = if of.0[l] >= 0.0 {
-                self.0[l]
-            } else {
-                others.0[l]
-            };
-        }
-        self
-    }
-}
-
-type Vectors = [Lanes; 3];
-
-#[inline(always)]
-fn vectors(points: &Points) -> Vectors {
-    points.map_inline(Lanes)
-}
-
-#[inline(always)]
-fn minus(a: &Vectors, b: &Vectors) -> Vectors {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-#[inline(always)]
-fn dot(a: &Vectors, b: &Vectors) -> Lanes {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn off(from: &Vectors, along: &Vectors, by: Lanes) -> Vectors {
-    [
-        from[0] - along[0] * by,
-        from[1] - along[1] * by,
-        from[2] - along[2] * by,
-    ]
-}
-
-/// Squared distance of a point from a segment: from its first end, of its own length squared, and along it.
-#[inline(always)]
-fn from_segment(from: &Vectors, along: &Vectors, square: Lanes, product: Lanes) -> Lanes {
-    let rest = off(from, along, (product * square.inverse()).clamped());
-    dot(&rest, &rest)
-}
 
 /// The features of a patch, in groups of eight; the last one fills the last group.
 pub(super) struct Groups<'a, const N: usize> {
@@ -185,29 +53,61 @@ pub(super) struct Hits {
 
 /// Squared distances of eight features from a box (m²), at least.
 #[inline(always)]
-fn box_squares<const N: usize>(features: &[Points; N], bounds: &Bounds) -> Lanes {
+fn box_squares<const N: usize>(features: &[Points; N], bounds: &Bounds) -> Eight {
     let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
-    let mut squares = Lanes::all(0.0);
+    let mut squares = [0.0; 8];
     for axis in 0..3 {
-        let (mut least, mut most) = (Lanes(features[0][axis]), Lanes(features[0][axis]));
-        for points in &features[1..] {
-            least = least.min(Lanes(points[axis]));
-            most = most.max(Lanes(points[axis]));
+        for l in 0..8 {
+            let (mut least, mut most) = (features[0][axis][l], features[0][axis][l]);
+            for points in &features[1..] {
+                least = smaller(points[axis][l], least);
+                most = larger(points[axis][l], most);
+            }
+            let gap = larger(0.0, larger(low[axis] - most, least - high[axis]));
+            squares[l] += gap * gap;
         }
-        let above = least - Lanes::all(high[axis]);
-        let gap = above.max(Lanes::all(low[axis]) - most).max(Lanes::all(0.0));
-        squares = squares + gap * gap;
     }
     squares
 }
 
 /// Squared distances of a vertex from eight faces, or of an edge from eight others (m²).
 #[inline(always)]
-fn squares<const N: usize, const M: usize>(feature: &[Vectors; N], others: &[Points; M]) -> Lanes {
-    if N == 1 {
-        vertex_to_faces(&feature[0], [&others[0], &others[1], &others[2]])
-    } else {
-        edge_to_edges([&feature[0], &feature[1]], [&others[0], &others[1]])
+fn squares<const N: usize, const M: usize>(feature: &[Vec3; N], others: &[Points; M]) -> Eight {
+    let mut squares = [0.0; 8];
+    for l in 0..8 {
+        let of = |point: usize| point_of(&others[point], l);
+        squares[l] = if N == 1 {
+            vertex_to_face(feature[0], [of(0), of(1), of(2)])
+        } else {
+            edge_to_edge([feature[0], feature[1]], [of(0), of(1)])
+        };
+    }
+    squares
+}
+
+#[inline(always)]
+fn point_of(points: &Points, l: usize) -> Vec3 {
+    Vec3::new(points[0][l], points[1][l], points[2][l])
+}
+
+/// Whether all are greater than `far`.
+#[inline(always)]
+fn are_beyond(squares: &Eight, far: f32) -> bool {
+    squares
+        .iter()
+        .fold(true, |all, square| all & (*square > far))
+}
+
+/// Lowers `least` to those that are greater than `far`. NaN is not.
+#[inline(always)]
+fn lower(least: &mut Eight, squares: &Eight, far: f32) {
+    for l in 0..8 {
+        let beyond = if squares[l] > far {
+            squares[l]
+        } else {
+            f32::INFINITY
+        };
+        least[l] = smaller(beyond, least[l]);
     }
 }
 
@@ -220,32 +120,32 @@ fn near<const N: usize, const M: usize>(
     reach_squared: f32,
     hits: &mut Hits,
 ) {
-    let mut least = Lanes::all(hits.least);
+    let mut least = [hits.least; 8];
     for (from_second, others) in (0..).step_by(8).zip(other.points) {
         let from_own = box_squares(others, &own.bounds);
-        if from_own.are_beyond(reach_squared) {
-            least = least.min(from_own);
+        if are_beyond(&from_own, reach_squared) {
+            lower(&mut least, &from_own, reach_squared);
             continue;
         }
         for (from_first, group) in (0..).step_by(8).zip(own.points) {
             let from_other = box_squares(group, &other.bounds);
-            least = least.min(from_other.beyond(reach_squared));
+            lower(&mut least, &from_other, reach_squared);
             for l in 0..(own.count - from_first).min(8) {
-                if from_other.0[l] > reach_squared {
+                if from_other[l] > reach_squared {
                     continue;
                 }
-                let mut feature = [[Lanes::all(0.0); 3]; N];
+                let mut feature = [Vec3::ZERO; N];
                 for (point, eight) in feature.iter_mut().zip(group) {
-                    *point = eight.map_inline(|axis| Lanes::all(axis[l]));
+                    *point = point_of(eight, l);
                 }
                 let squares = squares(&feature, others);
                 hits.compared += 1;
-                least = least.min(squares.beyond(reach_squared));
-                if squares.are_beyond(reach_squared) {
+                lower(&mut least, &squares, reach_squared);
+                if are_beyond(&squares, reach_squared) {
                     continue;
                 }
                 for m in 0..(other.count - from_second).min(8) {
-                    let square = squares.0[m];
+                    let square = squares[m];
                     if square > reach_squared {
                         continue;
                     }
@@ -259,7 +159,7 @@ fn near<const N: usize, const M: usize>(
             }
         }
     }
-    hits.least = least.0.into_iter().fold(f32::INFINITY, f32::min);
+    hits.least = least.into_iter().fold(f32::INFINITY, f32::min);
 }
 
 /// Finds the faces that are no farther from vertices than the square root of `reach_squared`.
@@ -284,51 +184,69 @@ pub(super) fn near_edges(
     near(edges, others, reach_squared, hits);
 }
 
-/// Squared distances of a vertex from eight faces (m²).
+/// Squared distance of a vertex from a face (m²).
 #[inline(always)]
-fn vertex_to_faces(vertex: &Vectors, faces: [&Points; 3]) -> Lanes {
-    let [a, b, c] = faces.map_inline(vectors);
-    let (ab, ac, bc) = (minus(&b, &a), minus(&c, &a), minus(&c, &b));
-    let (from_a, from_b) = (minus(vertex, &a), minus(vertex, &b));
-    let (d00, d01, d11) = (dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac));
-    let (d20, d21) = (dot(&from_a, &ab), dot(&from_a, &ac));
+fn vertex_to_face(vertex: Vec3, [a, b, c]: [Vec3; 3]) -> f32 {
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let (from_a, from_b) = (vertex - a, vertex - b);
+    let (d00, d01, d11) = (ab.dot(ab), ab.dot(ac), ac.dot(ac));
+    let (d20, d21) = (from_a.dot(ab), from_a.dot(ac));
     let area = d00 * d11 - d01 * d01;
     let v = d11 * d20 - d01 * d21;
     let w = d00 * d21 - d01 * d20;
-    let inverse = area.inverse();
-    let off_plane = off(&off(&from_a, &ab, v * inverse), &ac, w * inverse);
-    let plane = dot(&off_plane, &off_plane);
-    let edges = from_segment(&from_a, &ab, d00, d20)
-        .min(from_segment(&from_a, &ac, d11, d21))
-        .min(from_segment(&from_b, &bc, dot(&bc, &bc), dot(&from_b, &bc)));
-    let inside = v.min(w).min(area - v - w);
+    let by_area = inverse(area);
+    let off_plane = from_a - ab * (v * by_area) - ac * (w * by_area);
+    let plane = off_plane.dot(off_plane);
+    let edges = smaller(
+        from_segment(from_b, bc, bc.dot(bc), from_b.dot(bc)),
+        smaller(
+            from_segment(from_a, ac, d11, d21),
+            from_segment(from_a, ab, d00, d20),
+        ),
+    );
+    let inside = smaller(area - v - w, smaller(w, v));
     // A face without an area is its edges.
-    plane.where_positive(inside, edges).min(edges)
+    let face = if inside >= 0.0 { plane } else { edges };
+    smaller(edges, face)
 }
 
-/// Squared distances of an edge from eight others (m²).
+/// Squared distance of two edges (m²).
 #[inline(always)]
-fn edge_to_edges([p, q]: [&Vectors; 2], edges: [&Points; 2]) -> Lanes {
-    let along = minus(q, p);
-    let [r, s] = edges.map_inline(vectors);
-    let (other, from) = (minus(&s, &r), minus(p, &r));
-    let (a, e, b) = (
-        dot(&along, &along),
-        dot(&other, &other),
-        dot(&along, &other),
-    );
-    let (c, f) = (dot(&along, &from), dot(&other, &from));
+fn edge_to_edge([p, q]: [Vec3; 2], [r, s]: [Vec3; 2]) -> f32 {
+    let (along, other, from) = (q - p, s - r, p - r);
+    let (a, e, b) = (along.dot(along), other.dot(other), along.dot(other));
+    let (c, f) = (along.dot(from), other.dot(from));
     // Both lengths squared times the sine squared: 0 for parallel edges, which any point will do for.
     let product = a * e;
     let sine = product - b * b;
-    let sine = sine.where_positive(sine - product * Lanes::all(1.0e-6), Lanes::all(0.0));
-    let first = ((b * f - c * e) * sine.inverse()).clamped();
-    let second = ((b * first + f) * e.inverse()).clamped();
-    let first = ((b * second - c) * a.inverse()).clamped();
-    let rest = [
-        from[0] + along[0] * first - other[0] * second,
-        from[1] + along[1] * first - other[1] * second,
-        from[2] + along[2] * first - other[2] * second,
-    ];
-    dot(&rest, &rest)
+    let sine = if sine - product * 1.0e-6 >= 0.0 {
+        sine
+    } else {
+        0.0
+    };
+    let first = clamped((b * f - c * e) * inverse(sine));
+    let second = clamped((b * first + f) * inverse(e));
+    let first = clamped((b * second - c) * inverse(a));
+    let rest = from + along * first - other * second;
+    rest.dot(rest)
+}
+
+/// Squared distance of a point from a segment: from its first end, of its own length squared, and along it.
+#[inline(always)]
+fn from_segment(from: Vec3, along: Vec3, square: f32, product: f32) -> f32 {
+    let rest = from - along * clamped(product * inverse(square));
+    rest.dot(rest)
+}
+
+/// The reciprocal of a number greater than 0, otherwise 0.
+#[inline(always)]
+fn inverse(number: f32) -> f32 {
+    let inverse = 1.0 / number;
+    if number > 0.0 { inverse } else { 0.0 }
+}
+
+/// From 0 to 1.
+#[inline(always)]
+fn clamped(number: f32) -> f32 {
+    smaller(larger(number, 0.0), 1.0)
 }

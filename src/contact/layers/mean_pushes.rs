@@ -16,7 +16,10 @@ use bevy::math::Vec3;
 use multiversion::multiversion;
 
 use super::{origin::Origin, participant::Participant};
-use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X};
+use crate::{
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X},
+    contact::friction::{larger, smaller},
+};
 
 /// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m per sub-step).
 #[derive(Debug, Default, Clone)]
@@ -108,8 +111,7 @@ fn hold(
             let square = x * x + y * y + z * z;
             // 0 for particles that were not pushed.
             let s = against / square.max(f32::MIN_POSITIVE);
-            let s = if s > 0.0 { s } else { 0.0 };
-            part[l] = if s < MOST { s } else { MOST };
+            part[l] = smaller(larger(s, 0.0), MOST);
             squares[l] = part[l] * part[l] * square;
         }
         let mut travel = [0.0; LANES];
@@ -123,18 +125,9 @@ fn hold(
             }
         }
         for l in 0..LANES {
-            let (pushed, travel) = (squares[l], travel[l]);
-            farthest.push[l] = if pushed > farthest.push[l] {
-                pushed
-            } else {
-                farthest.push[l]
-            };
             // NaN is never the farthest.
-            farthest.travel[l] = if travel > farthest.travel[l] {
-                travel
-            } else {
-                farthest.travel[l]
-            };
+            farthest.push[l] = larger(squares[l], farthest.push[l]);
+            farthest.travel[l] = larger(travel[l], farthest.travel[l]);
         }
     }
 }

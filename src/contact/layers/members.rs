@@ -22,8 +22,6 @@ pub(super) struct Members {
     pub states: Vec<State>,
     /// Their positions and motions at first, to find changes.
     gathered: Vec<[Vec3A; 2]>,
-    /// The last pair with each member as its vertex, if any.
-    pub last_of: Vec<u32>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,7 +88,6 @@ impl Members {
         self.of.clear();
         self.states.clear();
         self.gathered.clear();
-        self.last_of.clear();
     }
 
     #[inline]
@@ -123,7 +120,6 @@ impl Members {
         self.of.push(member);
         self.gathered.push([state.place, state.moved]);
         self.states.push(state);
-        self.last_of.push(NOBODY);
         index
     }
 

@@ -311,9 +311,8 @@ impl MutualContact {
                     &self.motion,
                     &mut self.members,
                     &self.before_colliders,
+                    &mut self.counts,
                 );
-                self.contacts
-                    .leave_out_implied(&self.members, &mut self.counts);
             } else {
                 break;
             }

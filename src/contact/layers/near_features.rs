@@ -98,17 +98,29 @@ impl NearFeatures {
         each.flat_map(|pair| &self.candidates[pair.candidates()])
     }
 
-    /// Calls `add` with each contact, the two cloths, and the approach for which it is one (m).
-    pub fn contacts(&self, motion: &Motion, mut add: impl FnMut(&Candidate, [u32; 2], f32)) {
-        for pair in self.pairs.iter().filter(|pair| pair.has_contacts()) {
+    /// Each contact, by its place among all listed features, and the two cloths.
+    pub fn contacts(&self, motion: &Motion) -> impl Iterator<Item = (u32, [u32; 2])> {
+        self.pairs.iter().flat_map(|pair| {
             let cloths = pair
                 .of
                 .map_inline(|patch| motion.patches[patch as usize].cloth);
-            let candidates = &self.candidates[pair.candidates()];
-            for candidate in &candidates[..pair.contacts as usize] {
-                add(candidate, cloths, pair.near);
-            }
-        }
+            (pair.first..pair.first + pair.contacts).map(move |index| (index, cloths))
+        })
+    }
+
+    /// All pairs of features that may touch, also those that others keep apart.
+    #[cfg(test)]
+    pub fn near(&self) -> impl Iterator<Item = &Candidate> {
+        self.pairs.iter().flat_map(|pair| {
+            let listed = self.candidates[pair.candidates()].iter();
+            listed.filter(|candidate| candidate.apart <= pair.near)
+        })
+    }
+
+    /// Two listed features.
+    #[inline]
+    pub fn candidate(&self, index: u32) -> &Candidate {
+        &self.candidates[index as usize]
     }
 
     /// Adds neighbours that have folded. If any patch `has_left` its box, drops the pairs whose boxes are apart, and adds

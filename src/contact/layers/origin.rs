@@ -3,7 +3,10 @@
 use bevy::math::Vec3;
 
 use super::participant::Participant;
-use crate::cloth::{LANES, Lanes, MapInline, Slot, X, Y, Z};
+use crate::{
+    cloth::{LANES, Lanes, MapInline, Slot, X, Y, Z},
+    contact::friction::larger,
+};
 
 /// Earlier positions of all particles of some cloths, each in its own frame, block by block (m). Empty lanes are NaN.
 #[derive(Debug, Default, Clone)]
@@ -115,11 +118,7 @@ impl Origin {
                     let z = view[Z + l] - place[2][l] - drift.z;
                     let square = x * x + y * y + z * z;
                     // NaN is never the farthest.
-                    farthest[l] = if square > farthest[l] {
-                        square
-                    } else {
-                        farthest[l]
-                    };
+                    farthest[l] = larger(square, farthest[l]);
                 }
             }
         }

@@ -72,25 +72,18 @@ pub(super) struct NearPair {
     pub thickness: f32,
     /// Coulomb's μ.
     pub friction: f32,
-    /// The distance of their nearest points when they were found (m), its direction, and the weights of the four
-    /// particles.
-    pub distance: f32,
-    pub normal: Vec3A,
-    pub weights: [f32; 4],
+    /// Their nearest points when they were found.
+    pub nearest: Nearest,
     /// Whether they are kept a thickness apart. Otherwise other pairs keep them apart, and they only must not pass
     /// through each other.
     pub is_pushed: bool,
-    /// The previous pair of the same vertex with another face; or [`NOBODY`](super::members::NOBODY).
-    pub before: u32,
-    /// Whether they may pass through each other before they are measured again.
-    pub may_pass: bool,
 }
 
 impl NearPair {
     /// Gap between the two features along the normal (m): while it is positive, a plane separates them.
     #[inline]
     pub fn clearance(&self, states: [&State; 4]) -> f32 {
-        let [a, b, c, d] = states.map_inline(|state| self.normal.dot(state.place));
+        let [a, b, c, d] = states.map_inline(|state| self.nearest.normal.dot(state.place));
         if self.split == VERTEX_AND_FACE {
             a - b.max(c).max(d)
         } else {

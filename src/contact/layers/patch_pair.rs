@@ -4,7 +4,12 @@ use std::ops::Range;
 
 use bevy::math::Vec3A;
 
-use super::{motion::Motion, pair::Nearest, participant::Participant};
+use super::{
+    certificate::LEFT_OF_THICKNESS,
+    motion::Motion,
+    pair::{Nearest, VERTEX_AND_FACE},
+    participant::Participant,
+};
 use crate::cloth::MapInline;
 
 /// Room for motion, as a fraction of the thickness, in which the nearest points of contacts are not found again.
@@ -28,7 +33,7 @@ pub(super) struct PatchPair {
     /// How far they may approach each other before features that are not listed can touch (m).
     pub slack: f32,
     /// How far they may approach each other before their features are measured again, and the largest `apart` of
-    /// contacts (m).
+    /// contacts and of edges that are nearest at their ends (m).
     pub until: f32,
     pub near: f32,
     /// The listed features.
@@ -51,6 +56,11 @@ pub(super) struct Candidate {
     pub nearest: Nearest,
     /// The distance less the thickness, at least (m).
     pub apart: f32,
+    /// Whether they are kept a thickness apart. Otherwise others keep them apart, and they only must not pass
+    /// through each other.
+    pub is_pushed: bool,
+    /// Whether they may pass through each other before they are measured again.
+    pub may_pass: bool,
 }
 
 impl Candidate {
@@ -63,7 +73,35 @@ impl Candidate {
             thickness,
             nearest: Nearest::default(),
             apart: distance - thickness,
+            is_pushed: false,
+            may_pass: false,
         }
+    }
+}
+
+impl Candidate {
+    /// Whether a nearer face already keeps the vertex away from this one: the nearest point is on an edge of both. Of two that are
+    /// equally near, the `first` does.
+    #[inline]
+    pub fn is_implied_by(&self, other: &Self, first: bool) -> bool {
+        let [own, others] = [&self.nearest, &other.nearest];
+        let is_nearer =
+            others.distance < own.distance || (others.distance == own.distance && first);
+        let has = |corner: usize| {
+            own.weights[corner] == 0.0 || other.particles[1..].contains(&self.particles[corner])
+        };
+        is_nearer && other.thickness >= self.thickness && (1..4).all(has)
+    }
+
+    /// Whether they are a vertex and a face whose nearest point is on its border.
+    #[inline]
+    pub fn may_be_implied(&self) -> bool {
+        self.is_vertex_with_face() && self.nearest.weights.contains(&0.0)
+    }
+
+    #[inline]
+    pub fn is_vertex_with_face(&self) -> bool {
+        self.split as usize == VERTEX_AND_FACE
     }
 }
 
@@ -103,7 +141,7 @@ impl PatchPair {
 
     /// Has no contacts, unless they neither touch nor `cross`: then they have come apart.
     pub fn leave_alone(&mut self, cross: bool, place: &Place) {
-        self.is_tangled = cross || self.has_contacts();
+        self.is_tangled = cross || self.until <= self.near;
         if self.is_tangled {
             self.contacts = 0;
             self.until = self.slack.min(place.used + LEFT_ALONE * place.thickness);
@@ -130,6 +168,8 @@ impl PatchPair {
 pub(super) struct Place {
     pub thickness: f32,
     pub spacing: f32,
+    /// Whether one is of a rope. Strands side by side are nearest at ends of edges, and no vertex and face push them.
+    is_of_rope: bool,
     /// Upper bound of their approach in the sub-step (m).
     pub used: f32,
     /// The reserve of resting layers (m).
@@ -151,14 +191,15 @@ impl Place {
         Self {
             thickness,
             spacing: spacing[0].min(spacing[1]),
+            is_of_rope: of.iter().any(|cloth| cloth.sheet.is_rope()),
             used: pair.used(motion),
             reserve,
         }
     }
 }
 
-/// Measures the listed features of two patches that have come nearer by no more than `used_before` (m). Those that are
-/// still far stay as they are.
+/// Measures the listed features of two patches that have come nearer by no more than `used_before` (m), and finds which are contacts.
+/// Those that are still far stay as they are.
 pub(super) fn measure(
     pair: &mut PatchPair,
     candidates: &mut [Candidate],
@@ -167,8 +208,8 @@ pub(super) fn measure(
     used_before: f32,
 ) {
     pair.near = place.used + FRESH * place.thickness;
-    pair.contacts = 0;
-    let mut least = f32::INFINITY;
+    pair.until = pair.slack;
+    let mut near = 0;
     for index in 0..candidates.len() {
         let candidate = &mut candidates[index];
         candidate.apart -= used_before;
@@ -181,17 +222,39 @@ pub(super) fn measure(
             candidate.nearest = Nearest::of(candidate.split as usize, places);
             candidate.apart = candidate.nearest.distance - candidate.thickness;
         }
+        pair.until = pair.until.min(candidate.apart.max(pair.near));
         if candidate.apart <= pair.near {
-            candidates.swap(index, pair.contacts as usize);
-            pair.contacts += 1;
-        } else {
-            least = least.min(candidate.apart);
+            let Nearest { distance, .. } = candidate.nearest;
+            candidate.may_pass = distance <= pair.near + LEFT_OF_THICKNESS * candidate.thickness;
+            candidate.is_pushed = candidate.is_vertex_with_face()
+                || place.is_of_rope
+                || !candidate.nearest.is_at_border();
+            candidates.swap(index, near);
+            near += 1;
         }
     }
-    let until = if pair.has_contacts() {
-        pair.near
-    } else {
-        least
-    };
-    pair.until = until.min(pair.slack);
+    leave_out(pair, &mut candidates[..near]);
+}
+
+/// Leaves out of near features what other contacts keep apart, and what is not pushed and cannot pass.
+fn leave_out(pair: &mut PatchPair, near: &mut [Candidate]) {
+    for index in 0..near.len() {
+        let candidate = &near[index];
+        let mut others = near.iter().enumerate();
+        let is_implied = candidate.may_be_implied()
+            && others.any(|(at, other)| {
+                at != index
+                    && other.split == candidate.split
+                    && other.particles[0] == candidate.particles[0]
+                    && candidate.is_implied_by(other, at < index)
+            });
+        near[index].is_pushed &= !is_implied;
+    }
+    pair.contacts = 0;
+    for index in 0..near.len() {
+        if near[index].is_pushed || near[index].may_pass {
+            near.swap(index, pair.contacts as usize);
+            pair.contacts += 1;
+        }
+    }
 }

@@ -2,7 +2,11 @@
 
 use bevy::math::Vec3A;
 
-use super::{contacts::Contacts, members::Members, pair::NearPair};
+use super::{
+    contacts::Contacts,
+    members::Members,
+    pair::{NearPair, Nearest},
+};
 use crate::cloth::MapInline;
 
 /// Number of times that overlapping pairs are pushed in a sub-step: the weight of a pile has to reach the floor through
@@ -35,7 +39,9 @@ const LEAST_FREE: f32 = 0.01;
 
 /// Pushes near pairs apart. Lists those that overlap by more than layers at rest. Returns how many touched.
 pub(super) fn push(contacts: &mut Contacts, members: &mut Members, dt: f32) -> u32 {
-    let Contacts { pairs, overlapping } = contacts;
+    let Contacts {
+        pairs, overlapping, ..
+    } = contacts;
     overlapping.clear();
     let mut touched = 0;
     let part = pairs.len().div_ceil(APART);
@@ -65,9 +71,9 @@ pub(super) fn push(contacts: &mut Contacts, members: &mut Members, dt: f32) -> u
 /// the sub-step; the release of an older overlap adds only a slow velocity. Returns their distance if they touch (m).
 #[inline]
 fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Option<f32> {
-    let NearPair {
+    let Nearest {
         weights, normal, ..
-    } = *pair;
+    } = pair.nearest;
     let combined = |[a, b, c, d]: [Vec3A; 4]| {
         a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3]
     };

@@ -299,11 +299,11 @@ fn what_folds_and_unfolds_is_found() {
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let mut contacts = HashSet::new();
-            contact.near.contacts(&contact.motion, |candidate, _, _| {
+            for candidate in contact.near.near() {
                 let of = candidate.particles.map(|particle| particle - before);
                 let (first, second) = of.split_at(candidate.split as usize);
                 contacts.insert(named(first, second));
-            });
+            }
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             pairs.push(contact.pairs());

@@ -1,6 +1,6 @@
 //! No pair of near features is lost, and patches that are skipped cannot touch.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use bevy::math::{DVec3, Vec3};
 
@@ -38,6 +38,18 @@ pub(super) fn shapes() -> Vec<(&'static str, fn(Vec3) -> Vec3)> {
 }
 
 pub(super) type Feature = (Vec<u32>, Vec<u32>);
+
+/// The distance of each vertex from the nearest of its faces (m).
+fn nearest_faces<'a>(of: impl Iterator<Item = &'a Candidate>) -> HashMap<u32, f32> {
+    let mut nearest = HashMap::new();
+    for candidate in of.filter(|of| of.is_vertex_with_face()) {
+        let known = nearest
+            .entry(candidate.particles[0])
+            .or_insert(f32::INFINITY);
+        *known = known.min(candidate.nearest.distance);
+    }
+    nearest
+}
 
 /// A pair, whichever way its features are named.
 pub(super) fn named(first: &[u32], second: &[u32]) -> Feature {
@@ -251,10 +263,11 @@ fn no_pair_is_lost_on_the_way() {
             contact.motion.measure_all();
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
-            let mut known = HashSet::new();
-            contact.near.contacts(&contact.motion, |candidate, _, _| {
-                known.insert(feature(candidate));
-            });
+            let known: HashSet<Feature> = contact.near.near().map(feature).collect();
+            let all = contact.near.contacts(&contact.motion);
+            let pushed = all.map(|(index, _)| contact.near.candidate(index));
+            let pushed = nearest_faces(pushed.filter(|contact| contact.is_pushed));
+            assert_eq!(nearest_faces(contact.near.near()), pushed, "step {step}");
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             let places = places(&cloths[0]);

@@ -89,10 +89,7 @@ fn no_pair_of_a_torn_cloth_is_lost() {
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let listed: HashSet<Feature> = contact.near.all().map(feature).collect();
-            let mut contacts = HashSet::new();
-            contact.near.contacts(&contact.motion, |candidate, _, _| {
-                contacts.insert(feature(candidate));
-            });
+            let contacts: HashSet<Feature> = contact.near.near().map(feature).collect();
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             brute.near(&places(&cloths[0]), reach, |feature, apart| {

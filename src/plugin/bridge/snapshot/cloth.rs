@@ -67,7 +67,7 @@ impl Default for ClothSnapshot {
 
 impl ClothSnapshot {
     /// Version of the snapshots that this crate writes. It reads no other version.
-    pub const VERSION: u32 = 10;
+    pub const VERSION: u32 = 11;
 
     /// A snapshot of the current state of a cloth.
     ///
