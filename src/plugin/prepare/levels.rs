@@ -11,10 +11,10 @@ use bevy::{
 };
 
 use super::{
-    cameras::Cameras,
     colliders::{ColliderMotion, ColliderTree},
     islands::{Islands, Span},
     seams::Seams,
+    source::Cameras,
 };
 use crate::{
     cloth::ClothParticles,

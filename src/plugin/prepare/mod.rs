@@ -9,7 +9,6 @@ mod attach;
 mod broad_phase;
 mod build;
 mod build_inputs;
-mod cameras;
 mod carry;
 mod cloths;
 mod colliders;
@@ -47,6 +46,6 @@ pub(crate) use roots::{Teleporting, follow_roots};
 pub(crate) use seams::{Seams, forget_stitches, prepare_seams};
 pub(crate) use source::Skins;
 #[cfg(feature = "mesh")]
-pub(crate) use source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
+pub(crate) use source::{ChangedMeshes, SharedMeshes, not_there, note_changed_meshes};
 pub(crate) use tears::build_torn_ahead;
 pub(crate) use wind::prepare_wind;

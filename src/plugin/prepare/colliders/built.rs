@@ -31,7 +31,7 @@ impl BuiltShape {
     pub fn rigid(
         known: Option<Self>,
         collider: &ClothCollider,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
         scale: Vec3,
     ) -> Result<Self, ClothError> {

@@ -48,7 +48,7 @@ impl SkinnedMotion {
         &mut self,
         collider: &ClothCollider,
         places: &Places,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
     ) -> Result<Option<SkinnedPose>, ClothError> {
         meshes.joints(entity, collider, places, &mut self.now)?;

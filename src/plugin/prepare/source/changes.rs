@@ -24,25 +24,17 @@ pub(crate) fn note_changed_meshes(
     if events.is_empty() {
         return;
     }
-    let source = |built: &ClothBuilt| {
-        built
-            .shared
-            .recipe
-            .as_ref()?
-            .source
-            .map(|source| source.mesh)
-    };
     // Not by way of the colliders: the meshes of cloths that are drawn change in each frame.
     sources.clear();
-    sources.extend(cloths.iter().filter_map(source));
+    sources.extend(cloths.iter().filter_map(|built| Some(built.source()?.mesh)));
     sources.extend(shared.meshes());
     for event in events.read() {
         match event {
             AssetEvent::Modified { id } | AssetEvent::Removed { id } if sources.contains(id) => {
-                changed.note(*id);
+                *changed.0.entry(*id).or_default() += 1;
             }
             AssetEvent::Unused { id } => {
-                changed.forget(*id);
+                changed.0.remove(id);
                 shared.forget(*id);
             }
             _ => {}

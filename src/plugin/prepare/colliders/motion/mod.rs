@@ -66,7 +66,7 @@ impl ColliderMotion {
         &mut self,
         collider: &ClothCollider,
         places: &Places,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
     ) -> Result<Isometry3d, ClothError> {
         let was_skinned = self.is_skinned();
@@ -102,7 +102,7 @@ impl ColliderMotion {
         collider: &ClothCollider,
         body: Option<&ClothBody>,
         places: &Places,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
         time_passes: bool,
     ) -> Result<(), ClothError> {
