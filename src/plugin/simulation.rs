@@ -6,7 +6,7 @@ use bevy::{
     mesh::Mesh,
 };
 use bevy::{
-    app::{App, FixedUpdate, Last, Plugin},
+    app::{App, Last, Plugin},
     ecs::{
         bundle::Bundle,
         component::Component,
@@ -42,7 +42,7 @@ use super::{
     },
     reflection::register_with_lists,
     search::{query_collisions, rebuild_hierarchies},
-    sets::ClothSystems,
+    sets::{ClothSystems, runs_in_schedule},
     state::{
         ClothBuilt, ClothContacts, ClothFault, ClothParts, ClothSearch, ClothStats,
         ClothTouchStarted, ClothTouchStopped, Notices, OwnParts, SharedParts, WindField,
@@ -71,19 +71,9 @@ pub struct ClothPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for ClothPlugin {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
-}
-
-impl ClothPlugin {
+runs_in_schedule! {
     /// Runs its systems in `schedule`.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    ClothPlugin
 }
 
 impl Plugin for ClothPlugin {

@@ -2,7 +2,7 @@
 //! them back.
 
 use bevy::{
-    app::{App, FixedUpdate, Plugin},
+    app::{App, Plugin},
     ecs::{
         component::Component,
         entity::Entity,
@@ -22,7 +22,11 @@ use bevy_rapier3d::{geometry::Collider, plugin::PhysicsSet};
 use super::rapier_body::add_push_back;
 use crate::{
     contact::ClothCollider,
-    plugin::{naming::Part, sets::ClothSystems, state::ClothFault},
+    plugin::{
+        naming::Part,
+        sets::{ClothSystems, runs_in_schedule},
+        state::ClothFault,
+    },
 };
 
 /// Makes the rapier `Collider` on the same entity a [`ClothCollider`], at the scale and with the offsets that rapier
@@ -40,19 +44,9 @@ pub struct ClothRapierPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for ClothRapierPlugin {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
-}
-
-impl ClothRapierPlugin {
+runs_in_schedule! {
     /// Runs its system in `schedule`, which must be that of [`ClothPlugin`](crate::plugin::ClothPlugin).
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    ClothRapierPlugin
 }
 
 impl Plugin for ClothRapierPlugin {

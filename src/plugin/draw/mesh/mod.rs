@@ -37,7 +37,7 @@ use crate::{
         authoring::{ClothLodLevel, ClothMesh, ClothSkeleton},
         frame::{ClothFrame, rigid},
         prepare::Skins,
-        sets::ClothSystems,
+        sets::{ClothSystems, runs_in_schedule},
         state::{ClothBuilt, ClothScratch, ClothState, LodAction, Notices},
     },
 };
@@ -63,19 +63,9 @@ pub struct ClothMeshPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for ClothMeshPlugin {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
-}
-
-impl ClothMeshPlugin {
+runs_in_schedule! {
     /// For a [`ClothPlugin`](crate::plugin::ClothPlugin) in `schedule`.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    ClothMeshPlugin
 }
 
 impl Plugin for ClothMeshPlugin {
