@@ -12,22 +12,19 @@ use super::{
     asleep::sleeps_as_it_was,
     attach::follow_targets,
     broad_phase::clear_stats,
-    build::build,
-    build_inputs::{Build, BuildInputs},
+    build_inputs::{Build, BuildInputs, Building},
     carry::{carry, new_from_old},
     drag::jump,
     freeze::{freeze, thaw},
     notice::notice_new,
-    preparing::{NO_PINS, PrepareQuery, PrepareQueryItem, Surroundings},
+    preparing::{PrepareQuery, PrepareQueryItem, Surroundings},
     skin::{move_with_pose, place_pose, stand_in_pose},
     step::{prepare_contact, prepare_step, see_whether_it_rests},
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, MeshError},
+    cloth::{ClothError, ClothParticles},
     plugin::{
-        authoring::{
-            ClothAttachments, ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod,
-        },
+        authoring::{ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod},
         frame::{ClothFrame, global_transform},
         naming::Part,
         state::{ClothFault, GameForces, Inputs, LodAction, Notices, SharedParts},
@@ -89,11 +86,6 @@ pub(crate) fn prepare_cloths(
         if cloth.game.teleport.is_some() && outcome.is_ok() {
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
         }
-        // An asset that is being loaded is no fault.
-        let outcome = match outcome {
-            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
-            outcome => outcome,
-        };
         ClothFault::report(
             &mut commands,
             cloth.entity,
@@ -121,10 +113,7 @@ fn stand_still(cloth: &mut PrepareQueryItem, around: &Surroundings) -> Result<()
     cloth.contacts.clear();
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let targets = &around.targets;
-    let attachments = cloth
-        .game
-        .attachments
-        .map_or(&[][..], ClothAttachments::as_slice);
+    let attachments = cloth.game.attachments();
     freeze(
         cloth.entity,
         attachments,
@@ -211,23 +200,28 @@ fn build_cloth(
     }
     let wanted = BuildInputs {
         cloth: &cloth.game.cloth,
-        changed: cloth.game.cloth.last_changed(),
+        changes: cloth.game.changes(),
         source: sources.find(cloth.entity, &cloth.game.cloth, built.source())?,
         material: &inputs.material,
         grain: cloth.game.grain(),
-        map: (cloth.game.map.as_ref()).map(|map| (&**map, map.last_changed())),
+        map: cloth.game.map.as_deref(),
         tears: cloth.game.tears(),
-        pins: cloth.game.pins.unwrap_or(&NO_PINS),
-        attachments: cloth
-            .game
-            .attachments
-            .map_or(&[][..], ClothAttachments::as_slice),
+        pins: cloth.game.pins(),
+        attachments: cloth.game.attachments(),
         scale,
         has_layers: (inputs.self_collision.as_ref()).is_some_and(|of| of.with_itself),
         is_async: around.async_builds.contains(cloth.entity),
     };
     let is_new = built.from.is_some() || particles.is_empty();
-    let build = build(&wanted, sources, parts, particles, built, state)?;
+    let mut building = Building {
+        wanted: &wanted,
+        sources,
+        parts,
+        particles,
+        built,
+        state,
+    };
+    let build = building.build()?;
     if build == Build::New {
         *cloth.frame = frame;
     }
@@ -279,10 +273,7 @@ fn apply_motion(
     has_stood: bool,
 ) -> Result<(), ClothError> {
     let Surroundings { targets, roots, .. } = around;
-    let attachments = cloth
-        .game
-        .attachments
-        .map_or(&[][..], ClothAttachments::as_slice);
+    let attachments = cloth.game.attachments();
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
     targets.find(

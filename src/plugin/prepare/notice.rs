@@ -4,9 +4,8 @@ use bevy::math::Vec3;
 
 use super::{cost::least_cost, preparing::PrepareQueryItem};
 use crate::{
-    cloth::{Pin, Pins, Surface},
+    cloth::{Pin, Surface},
     plugin::{
-        authoring::ClothAttachments,
         state::{Inputs, Notice, Notices},
         threads::{MIN_TO_SPLIT, threads},
     },
@@ -21,10 +20,9 @@ pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices:
     };
     cloth.built.noticed.is_due = false;
     let surface = cloth.built.surface();
-    let attachments = cloth.game.attachments.map(ClothAttachments::as_slice);
-    let attached = attachments.into_iter().flatten();
-    let pins = cloth.game.pins.into_iter().flat_map(Pins::iter);
-    let mut pins = pins.chain(attached.map(|attachment| &attachment.pin));
+    let attached = cloth.game.attachments().iter();
+    let attached = attached.map(|attachment| &attachment.pin);
+    let mut pins = cloth.game.pins().iter().chain(attached);
     let vain = pins.find(|pin| pin.is_in_vain(surface));
     let vain = vain.map(|pin| in_vain(pin, surface));
     let (springs, material) = (cloth.built.springs(), &inputs.material);

@@ -28,7 +28,7 @@ mod wind_field;
 
 pub(crate) use async_build::BuildRequest;
 pub use built::ClothBuilt;
-pub(crate) use built::{BuiltFrom, FailedBuild};
+pub(crate) use built::{BuiltFrom, Changes, FailedBuild};
 pub use contacts::{ClothContact, ClothContacts, ClothTouchStarted, ClothTouchStopped};
 pub use fault::ClothFault;
 pub(crate) use forces::GameForces;
