@@ -19,12 +19,6 @@ pub(super) fn sleeps_as_it_was(
     forces: GameForces,
     seconds: f32,
 ) -> bool {
-    let Surroundings {
-        targets,
-        sources,
-        field,
-        ..
-    } = around;
     let (state, built) = (&*cloth.state, &*cloth.built);
     if !(state.rest.is_asleep() && state.is_valid && cloth.stats.is_asleep) {
         return false;
@@ -45,12 +39,13 @@ pub(super) fn sleeps_as_it_was(
         && built.has_grain(cloth.game.grain(), changes.grain)
         && built.is_torn_by(cloth.game.tears(), changes.tears)
         && built.is_made_from(&changes, &inputs.material, cloth.game.pins())
-        && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
+        && around.sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
         && forces.on(built.surface()).is_ok_and(|forces| {
             let ball = || ball(built, &cloth.particles, state.stretch.bound, &cloth.frame);
-            state.inputs.forces.is_still(forces, field, ball)
+            state.inputs.forces.is_still(forces, &around.field, ball)
         })
-        && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
+        && (around.targets.cloths.of(cloth.entity))
+            .is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 
 /// Whether its pose is the same as in the last tick, or it follows none.

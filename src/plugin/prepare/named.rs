@@ -2,16 +2,26 @@
 
 use std::iter;
 
-use bevy::ecs::{
-    entity::Entity,
-    entity_disabling::Disabled,
-    hierarchy::ChildOf,
-    name::Name,
-    query::{Allow, QueryFilter},
-    system::{Query, SystemParam},
+use bevy::{
+    ecs::{
+        entity::Entity,
+        entity_disabling::Disabled,
+        hierarchy::ChildOf,
+        name::Name,
+        query::{Allow, QueryFilter},
+        system::{Query, SystemParam},
+    },
+    math::Affine3A,
+    transform::helper::TransformHelper,
 };
 
-use crate::{cloth::TargetError, plugin::authoring::ClothTarget};
+use crate::{
+    cloth::{ClothError, Surface, TargetError},
+    plugin::{
+        authoring::{ClothAttachment, ClothTarget},
+        frame::{Places, global_transform},
+    },
+};
 
 /// Names of the entities that pass `F`, and the hierarchy.
 #[derive(SystemParam)]
@@ -65,5 +75,68 @@ impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
     fn steps_up(&self, from: Entity, to: Entity) -> Option<usize> {
         let line = |of: Entity| iter::once(of).chain(self.parents.iter_ancestors(of));
         line(from).position(|above| line(to).any(|of| of == above))
+    }
+}
+
+/// Transforms and names of entities.
+#[derive(SystemParam)]
+pub(crate) struct Targets<'w, 's> {
+    pub transforms: TransformHelper<'w, 's>,
+    /// Where cloths are, also below what is disabled.
+    pub cloths: Places<'w, 's>,
+    named: NamedTargets<'w, 's, ()>,
+}
+
+impl Targets<'_, '_> {
+    /// The entity that an attachment of `cloth` names; `known` is the one that it was in the last tick.
+    fn entity(
+        &self,
+        cloth: Entity,
+        attachment: &ClothAttachment,
+        known: Option<Entity>,
+    ) -> Result<Entity, TargetError> {
+        let exists = |entity| global_transform(&self.transforms, entity).is_some();
+        let pin = || format!("{:?}", attachment.pin);
+        (self.named).find(&attachment.target, cloth, known, exists, pin)
+    }
+
+    /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
+    ///
+    /// # Errors
+    /// [`TargetError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
+    /// [`TargetError::NoTargetNamed`]; or the error of a pin.
+    pub fn find(
+        &self,
+        cloth: Entity,
+        attachments: &[ClothAttachment],
+        known: &[ClothAttachment],
+        surface: &Surface,
+        entities: &mut Vec<Entity>,
+        places: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        places.clear();
+        // Known attachments were valid.
+        if attachments != known {
+            attachments
+                .iter()
+                .try_for_each(|each| each.pin.validate(surface))?;
+        }
+        for (index, attachment) in attachments.iter().enumerate() {
+            let target = self.entity(cloth, attachment, entities.get(index).copied())?;
+            let transform = global_transform(&self.transforms, target);
+            let affine = transform.map(|transform| transform.affine());
+            let place = affine.filter(|affine| affine.inverse().is_finite());
+            places.push(place.ok_or_else(|| TargetError::NoTarget {
+                pin: format!("{:?}", attachment.pin),
+                target,
+            })?);
+            if index < entities.len() {
+                entities[index] = target;
+            } else {
+                entities.push(target);
+            }
+        }
+        entities.truncate(attachments.len());
+        Ok(())
     }
 }

@@ -7,7 +7,7 @@ use bevy::ecs::{
 };
 
 use super::{
-    attach::Targets,
+    named::Targets,
     roots::Roots,
     source::{Skins, Sources},
 };
