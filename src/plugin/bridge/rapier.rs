@@ -4,6 +4,7 @@
 use bevy::{
     app::{App, Plugin},
     ecs::{
+        change_detection::DetectChangesMut,
         component::Component,
         entity::Entity,
         intern::Interned,
@@ -108,9 +109,7 @@ fn adopt_colliders(
         };
         match cloth_collider {
             Some(mut known) => {
-                if *known != wanted {
-                    *known = wanted;
-                }
+                known.set_if_neq(wanted);
             }
             None => {
                 commands.entity(entity).try_insert(wanted);

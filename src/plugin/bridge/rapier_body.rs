@@ -3,7 +3,7 @@
 use bevy::{
     app::App,
     ecs::{
-        change_detection::DetectChanges,
+        change_detection::{DetectChanges, DetectChangesMut},
         component::Component,
         entity::Entity,
         intern::Interned,
@@ -147,9 +147,7 @@ fn read_masses(
         };
         match known {
             Some(mut known) => {
-                if *known != body {
-                    *known = body;
-                }
+                known.set_if_neq(body);
             }
             None => {
                 commands.entity(entity).try_insert(body);

@@ -45,7 +45,7 @@ pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices:
         if let Some(text) = text
             && cloth.built.noticed.is_first(notice)
         {
-            notices.add(cloth.entity, notice, text);
+            notices.add(cloth.entity, text);
         }
     }
 }

@@ -11,26 +11,23 @@ use bevy::{
 
 use crate::plugin::naming::{Named, Part};
 
-/// What can hardly be meant, and is no fault.
+/// What can hardly be meant, and is no fault, and is found again in each tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Notice {
     /// A predicate holds for no particle.
     PinsNothing,
     /// A tick can't be simulated in the time that it stands for.
     TooSlow,
-    /// It is drawn in place of a mesh of the game's.
-    #[cfg(feature = "mesh")]
-    ReplacesMesh,
 }
 
 /// Notices that have yet to be logged, each with its cloth and its text.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Notices(Vec<(Entity, Notice, String)>);
+pub(crate) struct Notices(Vec<(Entity, String)>);
 
 impl Notices {
     /// Has a notice of a cloth be logged as the frame ends.
-    pub fn add(&mut self, cloth: Entity, notice: Notice, text: String) {
-        self.0.push((cloth, notice, text));
+    pub fn add(&mut self, cloth: Entity, text: String) {
+        self.0.push((cloth, text));
     }
 
     /// Whether there is anything to log.
@@ -61,16 +58,16 @@ impl Noticed {
 /// Logs the notices of a frame; equal texts in one line.
 pub(crate) fn log_notices(mut notices: ResMut<Notices>, names: Query<Named>) {
     let mut all = std::mem::take(&mut notices.0);
-    all.retain(|(cloth, ..)| names.contains(*cloth));
-    while let Some((cloth, _, text)) = all.first().cloned() {
+    all.retain(|(cloth, _)| names.contains(*cloth));
+    while let Some((cloth, text)) = all.first().cloned() {
         let Ok(name) = names.get(cloth) else {
             return;
         };
         let name = name.describe(Part::Cloth);
-        match all.iter().filter(|(.., other)| *other == text).count() {
+        match all.iter().filter(|(_, other)| *other == text).count() {
             1 => warn!("{name}: {text}"),
             alike => warn!("{name} and {} more: {text}", alike - 1),
         }
-        all.retain(|(.., other)| *other != text);
+        all.retain(|(_, other)| *other != text);
     }
 }

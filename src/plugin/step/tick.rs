@@ -285,10 +285,8 @@ fn add_far(
     near_set.clear();
     near_set.extend(near.iter().map(|(known, _)| *known));
     for (entity, motion, others) in colliders {
-        if others
-            .copied()
-            .unwrap_or_default()
-            .interacts_with(place.layers)
+        let others = others.copied().unwrap_or_default();
+        if others.interacts_with(place.layers)
             && !near_set.contains(&entity)
             && let Some(collider) = motion.seen_from(place.frame, place.carried.as_ref())
         {

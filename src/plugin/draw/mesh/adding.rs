@@ -19,7 +19,7 @@ use crate::{
     cloth::{Cloth, ClothShape},
     plugin::{
         authoring::{ClothMesh, ClothSkeleton},
-        state::{ClothBuilt, Notice, Notices},
+        state::{ClothBuilt, Notices},
     },
 };
 
@@ -70,8 +70,7 @@ pub(super) fn add_meshes(
         };
         // A scene or a clone brings a mesh of the plugin's along.
         if drawn.is_none() && !is_asset && other.is_some_and(|mesh| !is_own(mesh)) {
-            let text = replacing(cloth);
-            notices.add(entity, Notice::ReplacesMesh, text);
+            notices.add(entity, replacing(cloth));
         }
         let replaced = other.map(|mesh| mesh.0.clone()).or(known);
         let source = replaced.clone().filter(|_| is_asset);
