@@ -6,9 +6,9 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::wind::check_velocity;
+use super::wind::{LARGE, check_velocity};
 use crate::{
-    cloth::{ClothError, QuantityError},
+    cloth::{Allowed, ClothError, QuantityError},
     plugin::frame::{Places, Shift, unusable},
 };
 
@@ -110,33 +110,18 @@ impl ClothWindZone {
     /// [`QuantityError`] for the first value that is not.
     pub fn validate(&self) -> Result<(), QuantityError> {
         check_velocity(self.velocity)?;
-        let softness = "softness of a wind zone";
-        QuantityError::check(
-            self.softness,
-            |s| (0.0..=1.0).contains(&s),
-            softness,
-            "from 0 to 1",
-        )?;
+        Allowed::SHARE.check("softness of a wind zone", [self.softness])?;
         let lengths = match self.shape {
             ClothWindShape::Ball { radius } => Vec3::splat(radius),
             ClothWindShape::Cuboid { half_size } => half_size,
             ClothWindShape::Cone { length, angle } => {
                 let is_acute = |a: f32| a > 0.0 && a < std::f32::consts::FRAC_PI_2;
-                let quantity = "angle of a wind zone (rad)";
-                QuantityError::check(angle, is_acute, quantity, "positive, and less than π/2")?;
+                let acute = Allowed(is_acute, "positive, and less than π/2");
+                acute.check("angle of a wind zone (rad)", [angle])?;
                 Vec3::splat(length)
             }
         };
-        for length in lengths.to_array() {
-            let is_some = |l: f32| (1.0e-6..=1.0e12).contains(&l);
-            QuantityError::check(
-                length,
-                is_some,
-                "size of a wind zone (m)",
-                "from 10⁻⁶ to 10¹²",
-            )?;
-        }
-        Ok(())
+        LARGE.check("size of a wind zone (m)", lengths.to_array())
     }
 }
 
@@ -231,11 +216,13 @@ impl PlacedZone {
     /// Its velocity at a position in the world (m/s): the full velocity, less `3 s² − 2 s³` of it, with s the fraction
     /// of the soft border.
     pub fn at(&self, place: Vec3) -> Vec3 {
-        let depth = self
-            .zone
-            .shape
-            .depth(self.from_world.transform_point3(place));
-        let inner = 1.0 - self.softness();
+        let place = self.from_world.transform_point3(place);
+        let depth = self.zone.shape.depth(place);
+        // A fan's wind falls off all along its way.
+        let inner = match self.zone.shape {
+            ClothWindShape::Cone { .. } => 0.0,
+            _ => 1.0 - self.zone.softness,
+        };
         if depth <= inner {
             return self.velocity;
         }
@@ -249,13 +236,5 @@ impl PlacedZone {
     /// Its speed in the middle (m/s).
     pub fn fastest(&self) -> f32 {
         self.velocity.length()
-    }
-
-    /// A fan's wind falls off all along its way.
-    fn softness(&self) -> f32 {
-        match self.zone.shape {
-            ClothWindShape::Cone { .. } => 1.0,
-            _ => self.zone.softness,
-        }
     }
 }

@@ -5,8 +5,8 @@ use bevy::{ecs::change_detection::Mut, math::Vec3};
 use super::source::Sources;
 use crate::{
     cloth::{
-        Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothParticles, ClothShape,
-        ClothTears, MaterialFactors, PaintError, Pins, QuantityError, Surface,
+        Allowed, Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothParticles,
+        ClothShape, ClothTears, MaterialFactors, PaintError, Pins, Surface,
     },
     plugin::{
         authoring::ClothAttachment,
@@ -59,17 +59,16 @@ impl BuildInputs<'_> {
     /// Checks the material.
     ///
     /// # Errors
-    /// Those of [`ClothMaterial::validate`]; [`QuantityError`] for a rope that stiffens.
+    /// Those of [`ClothMaterial::validate`]; [`QuantityError`](crate::cloth::QuantityError) for a rope that stiffens.
     pub(super) fn check_material(&self) -> Result<(), ClothError> {
         self.material.validate()?;
-        match self.material.stiffening {
-            Some(stiffening) if self.cloth.shape.is_rope() => {
-                let quantity = "factor by which a rope stiffens";
-                QuantityError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
-                Ok(())
-            }
-            _ => Ok(()),
-        }
+        let stiffening = self.material.stiffening;
+        let of_rope = stiffening.filter(|_| self.cloth.shape.is_rope());
+        let factor = of_rope.map(|of| of.factor);
+        Ok(
+            Allowed(|factor| factor == 1.0, "1")
+                .check("factor by which a rope stiffens", factor)?,
+        )
     }
 
     /// The factors of its material.

@@ -14,8 +14,8 @@ use super::{
 };
 use crate::{
     cloth::{
-        Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothSkin,
-        ClothTearing, ClothTears, Pins, QuantityError, Surface,
+        Allowed, Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape,
+        ClothSkin, ClothTearing, ClothTears, Pins, Surface,
     },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
@@ -131,9 +131,7 @@ impl Inputs {
             creasing.validate()?;
         }
         let gravity = settings.gravity.unwrap_or(gravity);
-        for value in gravity.to_array() {
-            QuantityError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
-        }
+        Allowed::FINITE.check("gravity (m/s²)", gravity.to_array())?;
         Ok(Self {
             settings,
             material,
