@@ -13,7 +13,7 @@ use bevy::{
 
 use super::{
     drawing::MeshDrawing,
-    write::{Tangents, TornVertices, copy_of, mesh_of},
+    write::{Tangents, copy_of, mesh_of},
 };
 use crate::{
     cloth::{Cloth, ClothShape},
@@ -78,8 +78,7 @@ pub(super) fn add_meshes(
         let copy = source
             .as_ref()
             .and_then(|source| copy_of(meshes.get(source)?, surface));
-        let (copy, vertices) =
-            copy.unwrap_or_else(|| (mesh_of(surface), TornVertices::of_particles(surface)));
+        let (copy, vertices) = copy.unwrap_or_else(|| mesh_of(surface));
         let tangents = Tangents::of(&copy);
         let handle = meshes.add(copy);
         let drawn = ClothMesh {

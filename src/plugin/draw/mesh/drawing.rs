@@ -12,7 +12,8 @@ use super::{
     blend::Blend,
     placing::Carriers,
     skin::DrawnPose,
-    write::{Tangents, TornVertices, write_mesh},
+    tube,
+    write::{Tangents, TornVertices, Vectors},
 };
 use crate::{
     cloth::Surface,
@@ -64,17 +65,26 @@ impl MeshDrawing {
         self.version = old.version.wrapping_add(1);
     }
 
-    /// Writes what is drawn into the mesh.
+    /// Writes the drawn positions of the particles into the mesh, with normals and, if it has them, tangents. Vertices
+    /// without a particle stay where they are.
     pub(super) fn write(&mut self, mesh: &mut Mesh) {
-        let Self {
-            surface,
-            vertices,
-            drawn,
-            normals,
-            tangents,
-            ..
-        } = self;
-        write_mesh(mesh, surface, vertices, drawn, normals, tangents);
+        let surface = &self.surface;
+        if let Some(radius) = tube::radius_of(surface) {
+            return tube::write(mesh, &self.drawn, radius);
+        }
+        surface.normals_at(&self.drawn, &mut self.normals);
+        let mut vectors = Vectors::of(mesh);
+        for (values, of_particles) in [
+            (&mut vectors.positions, &self.drawn),
+            (&mut vectors.normals, &self.normals),
+        ] {
+            for (vertex, value) in values.iter_mut().flat_map(|all| all.iter_mut()).enumerate() {
+                if let Some(particle) = self.vertices.particle_of(surface, vertex) {
+                    *value = of_particles[particle].to_array();
+                }
+            }
+        }
+        self.tangents.write(vectors);
     }
 
     /// In this frame the cloth drives another mesh, so its drawn positions are needed even if it is hidden.

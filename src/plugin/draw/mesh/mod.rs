@@ -45,7 +45,7 @@ use adding::{add_meshes, remove_mesh};
 use placing::Drawn;
 
 pub(crate) use drawing::MeshDrawing;
-pub(super) use write::with_triangles;
+pub(super) use write::{Vectors, with_triangles};
 
 /// The steps for the meshes in a frame.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
