@@ -4,12 +4,14 @@ use std::mem::discriminant;
 
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticsStore},
-    ecs::{change_detection::DetectChangesMut, system::Commands},
+    ecs::{
+        change_detection::DetectChangesMut, entity::Entity, name::Name, query::QueryData,
+        system::Commands,
+    },
 };
 use bevy_egui::egui::{RichText, Ui};
 
 use super::{
-    cloth::PanelClothItem,
     fabric::{show_stiffening, show_weft},
     row::{choose, line, slide},
 };
@@ -18,8 +20,10 @@ use crate::{
     contact::NarrowPhase,
     hierarchy::{SearchMethod, SearchReason},
     plugin::{
-        authoring::ClothGravity, bridge::diagnostics::ClothDiagnosticsPlugin,
-        draw::ShowClothGizmos, state::ClothStats,
+        authoring::ClothGravity,
+        bridge::diagnostics::ClothDiagnosticsPlugin,
+        draw::ShowClothGizmos,
+        state::{ClothBuilt, ClothSearch, ClothStats},
     },
     solver::{ClothSettings, Substepping, TimeOrder},
 };
@@ -336,5 +340,34 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         ),
     ] {
         slide(ui, name, tip, value, 0.0..=most, |slider| slider);
+    }
+}
+
+/// A cloth with everything that the panel shows and sets.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct PanelCloth {
+    pub entity: Entity,
+    name: Option<&'static Name>,
+    pub settings: &'static mut ClothSettings,
+    pub material: &'static mut ClothMaterial,
+    pub search_method: &'static mut SearchMethod,
+    pub narrow_phase: &'static mut NarrowPhase,
+    pub show: Option<&'static mut ShowClothGizmos>,
+    pub built: &'static ClothBuilt,
+    pub search: &'static ClothSearch,
+    pub stats: &'static ClothStats,
+}
+
+/// Number of letters of a cloth's name that fit.
+const LONGEST_NAME: usize = 36;
+
+impl PanelClothItem<'_, '_> {
+    pub fn name(&self) -> String {
+        let name = self
+            .name
+            .map_or_else(|| format!("cloth {}", self.entity), ToString::to_string);
+        // A header is not cut off by itself.
+        name.chars().take(LONGEST_NAME).collect()
     }
 }

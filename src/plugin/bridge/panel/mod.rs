@@ -1,7 +1,6 @@
 //! An egui panel at the window's left edge: the properties of the fabric on top, the simulation's settings folded
 //! below.
 
-mod cloth;
 mod debugging;
 mod fabric;
 mod quality;
@@ -33,7 +32,7 @@ use bevy_egui::{
 };
 
 use crate::{cloth::ClothMaterial, plugin::authoring::ClothGravity};
-use cloth::PanelCloth;
+use debugging::PanelCloth;
 use quality::Quality;
 use row::{choose, line, slide};
 
