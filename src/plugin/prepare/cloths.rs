@@ -13,8 +13,7 @@ use super::{
     attach::follow_targets,
     broad_phase::clear_stats,
     build_inputs::{Build, BuildInputs, Building},
-    carry::{carry, new_from_old},
-    drag::jump,
+    carry::{carry, jump, new_from_old},
     freeze::{freeze, thaw},
     notice::notice_new,
     preparing::{PrepareQuery, PrepareQueryItem, Surroundings},
@@ -44,7 +43,7 @@ pub(crate) fn prepare_cloths(
     for entity in &around.teleports {
         commands.entity(entity).try_remove::<ClothTeleport>();
     }
-    parts.begin_tick();
+    parts.builds.begin_tick();
     let global_lod = global_lod.as_ref().map(|global| &global.0);
     for mut cloth in &mut cloths {
         let level = cloth.state.lod.level;

@@ -113,8 +113,10 @@ impl Building<'_, '_> {
             (of.areal_density, compliances, of.stiffening)
         };
         let is_as_stiff = from.factors.stiffness == factors.stiffness;
+        let stiffnesses = |of: &ClothMaterial| Stiffnesses::of(of, &factors.stiffness);
         let gives_otherwise = tethered_by(&from.material) != tethered_by(material);
-        let is_sprung_otherwise = !is_as_stiff || !Stiffnesses::are_alike(&from.material, material);
+        let is_sprung_otherwise =
+            !is_as_stiff || stiffnesses(&from.material) != stiffnesses(material);
         (from.material, from.pins, from.factors) = (*material, pins.clone(), factors);
         if are_others_pinned || gives_otherwise || !is_as_stiff {
             built.forget_tethers();

@@ -12,8 +12,6 @@ mod build_inputs;
 mod carry;
 mod cloths;
 mod colliders;
-mod cost;
-mod drag;
 mod follow;
 mod freeze;
 mod grabs;
@@ -33,12 +31,12 @@ mod tears;
 mod wind;
 
 pub(crate) use broad_phase::cover;
+pub(crate) use carry::FAR;
 pub(crate) use cloths::prepare_cloths;
 pub(crate) use colliders::{
     ChangedColliders, ColliderMemory, ColliderMotion, ColliderTree, forget_collider, note_enabled,
     note_removals, prepare_colliders,
 };
-pub(crate) use drag::FAR;
 pub(crate) use grabs::{hold_cloths, let_go};
 pub(crate) use islands::{Island, Islands, find_islands};
 pub(crate) use levels::choose_levels;

@@ -88,18 +88,6 @@ pub(crate) struct Targets<'w, 's> {
 }
 
 impl Targets<'_, '_> {
-    /// The entity that an attachment of `cloth` names; `known` is the one that it was in the last tick.
-    fn entity(
-        &self,
-        cloth: Entity,
-        attachment: &ClothAttachment,
-        known: Option<Entity>,
-    ) -> Result<Entity, TargetError> {
-        let exists = |entity| global_transform(&self.transforms, entity).is_some();
-        let pin = || format!("{:?}", attachment.pin);
-        (self.named).find(&attachment.target, cloth, known, exists, pin)
-    }
-
     /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
     ///
     /// # Errors
@@ -122,14 +110,14 @@ impl Targets<'_, '_> {
                 .try_for_each(|each| each.pin.validate(surface))?;
         }
         for (index, attachment) in attachments.iter().enumerate() {
-            let target = self.entity(cloth, attachment, entities.get(index).copied())?;
+            let known = entities.get(index).copied();
+            let exists = |entity| global_transform(&self.transforms, entity).is_some();
+            let pin = || format!("{:?}", attachment.pin);
+            let target = (self.named).find(&attachment.target, cloth, known, exists, pin)?;
             let transform = global_transform(&self.transforms, target);
             let affine = transform.map(|transform| transform.affine());
             let place = affine.filter(|affine| affine.inverse().is_finite());
-            places.push(place.ok_or_else(|| TargetError::NoTarget {
-                pin: format!("{:?}", attachment.pin),
-                target,
-            })?);
+            places.push(place.ok_or_else(|| TargetError::NoTarget { pin: pin(), target })?);
             if index < entities.len() {
                 entities[index] = target;
             } else {

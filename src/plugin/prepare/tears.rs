@@ -169,7 +169,7 @@ mod tests {
         app.finish();
         app.cleanup();
         (0..3).for_each(|_| app.update());
-        let building = |app: &App| app.world().resource::<SharedParts>().building();
+        let building = |app: &App| app.world().resource::<SharedParts>().builds.all.len();
         assert_eq!(building(&app), 0);
         let tears = app.world_mut().get_mut::<ClothTears>(cloth);
         tears.expect("it may tear").tear_all([[12, 13], [13, 14]]);

@@ -8,7 +8,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
+use super::{notices::Noticed, pose::SkinLimits, recipe::Source, shared::Shared};
 use crate::{
     cloth::{
         ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears, MaterialFactors, Pins,

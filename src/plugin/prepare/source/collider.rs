@@ -1,24 +1,31 @@
-//! Colliders that are made from drawn meshes.
+//! Colliders that are made from drawn meshes, and changes of meshes.
 
 use std::sync::Arc;
 
 use bevy::{
-    asset::AssetId,
+    asset::{AssetEvent, AssetId},
     ecs::{
         entity::Entity,
+        message::MessageReader,
         resource::Resource,
-        system::{Query, ResMut, SystemParam},
+        system::{Local, Query, ResMut, SystemParam},
     },
     math::Affine3A,
     mesh::{Mesh, Mesh3d},
-    platform::collections::HashMap,
+    platform::collections::{HashMap, HashSet},
 };
 
-use super::{asset::Sources, joints::Skins};
+use super::{
+    asset::{ChangedMeshes, Sources},
+    joints::Skins,
+};
 use crate::{
     cloth::{ClothError, MeshError},
     contact::{ClothCollider, MeshCollider, SkinnedTriangles},
-    plugin::{frame::Places, state::Source},
+    plugin::{
+        frame::Places,
+        state::{ClothBuilt, Source},
+    },
 };
 
 /// The colliders that have been made from meshes, shared by all entities with the same mesh.
@@ -142,5 +149,34 @@ impl ColliderMeshes<'_, '_> {
         shared.retain(|(known, _), _| known.mesh != source.mesh || *known == source);
         shared.insert((source, *kind), made.clone());
         Ok(made)
+    }
+}
+
+/// Notes the meshes that a game has changed: cloths and colliders that are made from them are built again.
+pub(crate) fn note_changed_meshes(
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut changed: ResMut<ChangedMeshes>,
+    mut shared: ResMut<SharedMeshes>,
+    cloths: Query<&ClothBuilt>,
+    mut sources: Local<HashSet<AssetId<Mesh>>>,
+) {
+    if events.is_empty() {
+        return;
+    }
+    // Not by way of the colliders: the meshes of cloths that are drawn change in each frame.
+    sources.clear();
+    sources.extend(cloths.iter().filter_map(|built| Some(built.source()?.mesh)));
+    sources.extend(shared.meshes());
+    for event in events.read() {
+        match event {
+            AssetEvent::Modified { id } | AssetEvent::Removed { id } if sources.contains(id) => {
+                *changed.0.entry(*id).or_default() += 1;
+            }
+            AssetEvent::Unused { id } => {
+                changed.0.remove(id);
+                shared.forget(*id);
+            }
+            _ => {}
+        }
     }
 }

@@ -5,8 +5,6 @@ mod asset;
 #[cfg(feature = "mesh")]
 mod cameras;
 #[cfg(feature = "mesh")]
-mod changes;
-#[cfg(feature = "mesh")]
 mod collider;
 #[cfg(feature = "mesh")]
 mod joints;
@@ -18,9 +16,7 @@ pub(crate) use asset::{ChangedMeshes, Sources, not_there};
 #[cfg(feature = "mesh")]
 pub(crate) use cameras::Cameras;
 #[cfg(feature = "mesh")]
-pub(crate) use changes::note_changed_meshes;
-#[cfg(feature = "mesh")]
-pub(crate) use collider::{ColliderMeshes, SharedMeshes};
+pub(crate) use collider::{ColliderMeshes, SharedMeshes, note_changed_meshes};
 #[cfg(feature = "mesh")]
 pub(crate) use joints::Skins;
 #[cfg(not(feature = "mesh"))]

@@ -245,13 +245,13 @@ impl ColliderMotion {
     /// Writes the inputs of its next path to a snapshot.
     pub fn remember(&self, memory: &mut ColliderMemory) {
         (memory.last, memory.cloths, memory.stay) = (self.last, self.cloths, self.stay);
-        memory.joints.clone_from(self.skinned.memory());
+        memory.joints.clone_from(&self.skinned.last);
     }
 
     /// Restores the inputs of its next path, from a snapshot.
     pub fn recall(&mut self, memory: &ColliderMemory) {
         (self.last, self.cloths, self.stay) = (memory.last, memory.cloths, memory.stay);
-        self.skinned.recall(&memory.joints);
+        self.skinned.last.clone_from(&memory.joints);
     }
 
     /// Whether it follows joints.
