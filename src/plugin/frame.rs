@@ -13,22 +13,11 @@ use bevy::{
     },
     math::{Affine3A, Isometry3d, Vec3, Vec3A},
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::{
-        components::{GlobalTransform, Transform},
-        helper::TransformHelper,
-    },
+    transform::components::{GlobalTransform, Transform},
 };
 
 use super::naming::quoted;
 use crate::cloth::{ClothError, TransformError};
-
-/// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
-pub(crate) fn global_transform(
-    transforms: &TransformHelper,
-    entity: Entity,
-) -> Option<GlobalTransform> {
-    transforms.compute_global_transform(entity).ok()
-}
 
 /// The error of a global transform that can't be used.
 pub(crate) fn unusable(transform: impl Into<Affine3A>) -> ClothError {

@@ -1,7 +1,11 @@
 //! Local winds.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
+    ecs::{
+        component::Component,
+        entity::{Entity, MapEntities},
+        reflect::ReflectComponent,
+    },
     math::{Affine3A, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
@@ -78,28 +82,24 @@ impl Default for ClothWindZone {
 impl ClothWindZone {
     /// A wind in a ball with this radius (m), with this velocity (m/s).
     pub fn ball(radius: f32, velocity: Vec3) -> Self {
-        Self {
-            shape: ClothWindShape::Ball { radius },
-            velocity,
-            ..Self::default()
-        }
+        Self::of(ClothWindShape::Ball { radius }, velocity)
     }
 
     /// A wind in a box with these half side lengths (m), with this velocity (m/s).
     pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
-        Self {
-            shape: ClothWindShape::Cuboid { half_size },
-            velocity,
-            ..Self::default()
-        }
+        Self::of(ClothWindShape::Cuboid { half_size }, velocity)
     }
 
     /// A fan that blows forward, along −z: with `speed` (m/s) at the fan, falling to zero at this `length` (m) and at
     /// this `angle` (rad) from its axis.
     pub fn fan(length: f32, angle: f32, speed: f32) -> Self {
+        Self::of(ClothWindShape::Cone { length, angle }, Vec3::NEG_Z * speed)
+    }
+
+    fn of(shape: ClothWindShape, velocity: Vec3) -> Self {
         Self {
-            shape: ClothWindShape::Cone { length, angle },
-            velocity: Vec3::NEG_Z * speed,
+            shape,
+            velocity,
             ..Self::default()
         }
     }
@@ -155,9 +155,10 @@ impl ClothWindShape {
 }
 
 /// A zone at its place in the tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(MapEntities, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PlacedZone {
+    #[entities]
     pub entity: Entity,
     zone: ClothWindZone,
     from_world: Affine3A,

@@ -6,7 +6,7 @@ use super::preparing::{PrepareQueryItem, Surroundings};
 use crate::{
     cloth::ClothParticles,
     plugin::{
-        frame::{ClothFrame, global_transform},
+        frame::ClothFrame,
         state::{ClothBuilt, GameForces, Inputs},
     },
 };
@@ -50,7 +50,7 @@ pub(super) fn sleeps_as_it_was(
 
 /// Whether its pose is the same as in the last tick, or it follows none.
 fn is_in_same_pose(cloth: &PrepareQueryItem, around: &Surroundings) -> bool {
-    let place = |joint| global_transform(&around.targets.transforms, joint);
+    let place = |joint| around.targets.place(joint);
     match (&cloth.game.skin, &cloth.built.skin) {
         (None, None) => true,
         (Some(skin), Some(known)) => {

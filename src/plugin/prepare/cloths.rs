@@ -24,7 +24,7 @@ use crate::{
     cloth::{ClothError, ClothParticles},
     plugin::{
         authoring::{ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod},
-        frame::{ClothFrame, global_transform},
+        frame::ClothFrame,
         naming::Part,
         state::{ClothFault, GameForces, Inputs, LodAction, Notices, SharedParts},
     },
@@ -112,7 +112,7 @@ fn stand_still(cloth: &mut PrepareQueryItem, around: &Surroundings) -> Result<()
     cloth.contacts.clear();
     freeze(cloth, &around.targets)?;
     if cloth.built.skin.is_some() && cloth.state.lod.level != ClothLodLevel::Off {
-        let place = |joint| global_transform(&around.targets.transforms, joint);
+        let place = |joint| around.targets.place(joint);
         (around.skins).read(cloth.entity, place, &mut cloth.scratch.pose.joints)?;
         stand_in_pose(cloth, &around.sources)?;
     }
@@ -178,9 +178,8 @@ fn build_cloth(
     let transform = targets.cloths.of(cloth.entity)?;
     let (frame, mut scale) = ClothFrame::of(&transform)?;
     if cloth.game.skin.is_some() {
-        let (pose, place) = (&mut cloth.scratch.pose, |joint| {
-            global_transform(&targets.transforms, joint)
-        });
+        let place = |joint| targets.place(joint);
+        let pose = &mut cloth.scratch.pose;
         (around.skins).read(cloth.entity, place, &mut pose.joints)?;
         // How large it is in the world is the skeleton's matter.
         scale = pose.scale().unwrap_or(scale);

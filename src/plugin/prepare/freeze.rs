@@ -10,7 +10,7 @@ use crate::{
     cloth::{ClothError, TargetError},
     plugin::{
         authoring::ClothAttachment,
-        frame::{ClothFrame, global_transform, rigid},
+        frame::{ClothFrame, rigid},
         state::{ClothState, Frozen},
     },
 };
@@ -21,7 +21,7 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
     let Some(target) = state.attachments.targets.first() else {
         return Some(frame.isometry());
     };
-    let place = global_transform(&targets.transforms, *target)?.affine();
+    let place = targets.place(*target)?.affine();
     place.inverse().is_finite().then(|| rigid(&place))
 }
 

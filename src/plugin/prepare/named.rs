@@ -12,14 +12,14 @@ use bevy::{
         system::{Query, SystemParam},
     },
     math::Affine3A,
-    transform::helper::TransformHelper,
+    transform::{components::GlobalTransform, helper::TransformHelper},
 };
 
 use crate::{
     cloth::{ClothError, Surface, TargetError},
     plugin::{
         authoring::{ClothAttachment, ClothTarget},
-        frame::{Places, global_transform},
+        frame::Places,
     },
 };
 
@@ -81,13 +81,18 @@ impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
 /// Transforms and names of entities.
 #[derive(SystemParam)]
 pub(crate) struct Targets<'w, 's> {
-    pub transforms: TransformHelper<'w, 's>,
+    transforms: TransformHelper<'w, 's>,
     /// Where cloths are, also below what is disabled.
     pub cloths: Places<'w, 's>,
     named: NamedTargets<'w, 's, ()>,
 }
 
 impl Targets<'_, '_> {
+    /// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
+    pub fn place(&self, entity: Entity) -> Option<GlobalTransform> {
+        self.transforms.compute_global_transform(entity).ok()
+    }
+
     /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
     ///
     /// # Errors
@@ -111,11 +116,10 @@ impl Targets<'_, '_> {
         }
         for (index, attachment) in attachments.iter().enumerate() {
             let known = entities.get(index).copied();
-            let exists = |entity| global_transform(&self.transforms, entity).is_some();
+            let exists = |entity| self.place(entity).is_some();
             let pin = || format!("{:?}", attachment.pin);
             let target = (self.named).find(&attachment.target, cloth, known, exists, pin)?;
-            let transform = global_transform(&self.transforms, target);
-            let affine = transform.map(|transform| transform.affine());
+            let affine = self.place(target).map(|place| place.affine());
             let place = affine.filter(|affine| affine.inverse().is_finite());
             places.push(place.ok_or_else(|| TargetError::NoTarget { pin: pin(), target })?);
             if index < entities.len() {

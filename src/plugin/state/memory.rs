@@ -67,12 +67,14 @@ pub(crate) struct Reported {
 }
 
 /// The attachments of a cloth.
-#[derive(Debug, Default, Clone)]
+#[derive(MapEntities, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct AttachmentMemory {
     /// Those from which `attached` was made, and the entities that they name.
     #[cfg_attr(feature = "serialize", serde(skip))]
+    #[entities]
     pub given: Vec<ClothAttachment>,
+    #[entities]
     pub targets: Vec<Entity>,
     pub attached: Vec<Attached>,
     /// Last place of the first attachment's target.
@@ -85,13 +87,6 @@ impl AttachmentMemory {
         self.targets.clone_from(&other.targets);
         self.attached.clone_from(&other.attached);
         self.first_target = other.first_target;
-    }
-
-    /// Forgets all but the targets.
-    fn detach(&mut self) {
-        self.attached.clear();
-        self.given.clear();
-        self.first_target = None;
     }
 }
 
@@ -190,24 +185,20 @@ impl ClothState {
         self.largest_gravity = 0.0;
         self.carriers.clear();
         self.creases.clear();
-        self.attachments.detach();
+        self.attachments.attached.clear();
+        self.attachments.given.clear();
+        self.attachments.first_target = None;
         self.pose = Pose::default();
     }
 }
 
 impl MapEntities for ClothState {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        let targets = self.attachments.targets.iter_mut();
-        let carried = self.carriers.iter_mut().map(|(entity, _)| entity);
-        for entity in targets.chain(carried) {
-            *entity = mapper.get_mapped(*entity);
+        for (body, _) in &mut self.carriers {
+            body.map_entities(mapper);
         }
-        for attachment in &mut self.attachments.given {
-            attachment.map_entities(mapper);
-        }
-        for known in self.resting.colliders_mut() {
-            known.map_entities(mapper);
-        }
+        self.attachments.map_entities(mapper);
+        self.resting.map_entities(mapper);
         self.inputs.forces.map_entities(mapper);
     }
 }

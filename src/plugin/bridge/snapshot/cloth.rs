@@ -2,7 +2,7 @@
 
 use bevy::ecs::{
     change_detection::{DetectChanges, DetectChangesMut, Ref},
-    entity::{Entity, EntityMapper, MapEntities},
+    entity::{Entity, MapEntities},
     world::World,
 };
 
@@ -34,13 +34,15 @@ use crate::{
 ///     kept[kept.len() - 10].restore(world, cloth)
 /// }
 /// ```
-#[derive(Debug, Clone)]
+#[derive(MapEntities, Debug, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothSnapshot {
     pub(super) version: u32,
     particles: ClothParticles,
     frame: ClothFrame,
+    #[entities]
     state: ClothState,
+    #[entities]
     contacts: ClothContacts,
     tears: ClothTears,
     /// Contact with itself alone.
@@ -90,17 +92,16 @@ impl ClothSnapshot {
             &'static ClothState,
             &'static ClothContacts,
             &'static ClothScratch,
-            Option<&'static ClothBuilt>,
-            Option<&'static ClothTears>,
         );
         let entity = world.get_entity(cloth).ok();
         let parts = entity.and_then(|entity| entity.get_components::<Parts>().ok());
-        let (particles, frame, state, contacts, scratch, built, tears) =
+        let (particles, frame, state, contacts, scratch) =
             parts.ok_or(SnapshotError::NoCloth { entity: cloth })?;
         self.version = Self::VERSION;
         self.particles.copy_from(&particles);
         self.frame = *frame;
         self.state.copy_from(state);
+        let built = world.get::<ClothBuilt>(cloth);
         self.state.lod.sphere = built
             .filter(|built| built.matches(&particles))
             .map(|built| {
@@ -110,7 +111,7 @@ impl ClothSnapshot {
         self.is_written = state.inputs.written != Some(particles.last_changed());
         self.contacts.clone_from(contacts);
         self.mutual.clone_from(&scratch.mutual);
-        match tears {
+        match world.get::<ClothTears>(cloth) {
             Some(tears) => self.tears.clone_from(tears),
             None => self.tears = ClothTears::none(),
         }
@@ -134,7 +135,9 @@ impl ClothSnapshot {
         let known = world
             .get::<Cloth>(cloth)
             .and(world.get::<ClothState>(cloth));
-        known.map_or(Err(SnapshotError::NoCloth { entity: cloth }), |_| Ok(()))
+        known
+            .map(drop)
+            .ok_or(SnapshotError::NoCloth { entity: cloth })
     }
 
     /// Puts a cloth back to this state. The cloth may never have been simulated, as in an app that has just started,
@@ -164,19 +167,11 @@ impl ClothSnapshot {
             &'static mut ClothStats,
             &'static mut ClothScratch,
             &'static mut ClothBuilt,
-            Option<&'static ClothAttachments>,
         );
+        let wanted = entity.get::<ClothAttachments>().cloned();
         let parts = entity.get_components_mut::<Parts>();
-        let (
-            mut particles,
-            mut frame,
-            mut contacts,
-            mut state,
-            mut stats,
-            mut scratch,
-            mut built,
-            wanted,
-        ) = parts.map_err(|_| SnapshotError::NoCloth { entity: cloth })?;
+        let (mut particles, mut frame, mut contacts, mut state, mut stats, mut scratch, mut built) =
+            parts.map_err(|_| SnapshotError::NoCloth { entity: cloth })?;
         // Particles that the game has written have not been weighed yet.
         let is_weighed = state.inputs.written == Some(particles.last_changed());
         let weighs_the_same = is_weighed && particles.weigh_as(&self.particles);
@@ -190,7 +185,7 @@ impl ClothSnapshot {
         state.is_valid &= survey.is_valid;
         state.largest_speed = survey.largest_speed;
         // Attachments are not written to files: they are the game's components.
-        let wanted = wanted.map_or(&[][..], ClothAttachments::as_slice);
+        let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
         let attachments = &mut state.attachments;
         if attachments.given.is_empty() && attachments.targets.len() == wanted.len() {
             attachments.given.extend_from_slice(wanted);
@@ -208,12 +203,5 @@ impl ClothSnapshot {
     /// The particles in the snapshot.
     pub fn particles(&self) -> &ClothParticles {
         &self.particles
-    }
-}
-
-impl MapEntities for ClothSnapshot {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        self.state.map_entities(mapper);
-        self.contacts.map_entities(mapper);
     }
 }
