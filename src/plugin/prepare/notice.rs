@@ -43,7 +43,7 @@ pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices:
     });
     for (notice, text) in [(Notice::PinsNothing, vain), (Notice::TooSlow, slow)] {
         if let Some(text) = text
-            && cloth.built.noticed.is_first(notice)
+            && cloth.built.noticed.given.insert(notice)
         {
             notices.add(cloth.entity, text);
         }

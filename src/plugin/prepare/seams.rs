@@ -115,7 +115,7 @@ pub(crate) fn forget_stitches(
 fn wake(of: [Entity; 2], cloths: &mut Query<Neighbour>) {
     for cloth in of {
         if let Ok(mut cloth) = cloths.get_mut(cloth)
-            && cloth.is_asleep()
+            && cloth.state.rest.is_asleep()
         {
             cloth.wake();
         }

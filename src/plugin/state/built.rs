@@ -79,7 +79,7 @@ pub(crate) struct BuiltFrom {
     pub unevenness: f32,
     pub changes: Changes,
     pub material: ClothMaterial,
-    /// What its `ClothMaterialMap` gave.
+    /// The factors of its `ClothMaterialMap`.
     pub factors: MaterialFactors,
     pub pins: Pins,
 }

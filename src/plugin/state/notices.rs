@@ -7,12 +7,13 @@ use bevy::{
         system::{Query, Res, ResMut},
     },
     log::warn,
+    platform::collections::HashSet,
 };
 
 use crate::plugin::naming::{Named, Part};
 
-/// What can hardly be meant, and is no fault, and is found again in each tick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What can hardly be meant, and is no fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Notice {
     /// A predicate holds for no particle.
     PinsNothing,
@@ -41,18 +42,7 @@ impl Notices {
 pub(crate) struct Noticed {
     /// Whether it was built, and not looked at since.
     pub is_due: bool,
-    given: Vec<Notice>,
-}
-
-impl Noticed {
-    /// Whether it is the first notice of its kind.
-    pub fn is_first(&mut self, notice: Notice) -> bool {
-        let is_first = !self.given.contains(&notice);
-        if is_first {
-            self.given.push(notice);
-        }
-        is_first
-    }
+    pub given: HashSet<Notice>,
 }
 
 /// Logs the notices of a frame; equal texts in one line.

@@ -40,7 +40,7 @@ pub(crate) struct MeshDrawing {
     /// Whether those were remembered from a cloth that slept.
     pub(super) rested: bool,
     /// Positions to be drawn, in the entity's frame.
-    pub(super) drawn: Vec<Vec3>,
+    pub(in crate::plugin::draw) drawn: Vec<Vec3>,
     pub(super) normals: Vec<Vec3>,
     /// The picture of a cloth that sleeps or is frozen: when its particles were written, the place of its entity or of
     /// the frozen particles relative to it, and whether it is visible.
@@ -50,10 +50,10 @@ pub(crate) struct MeshDrawing {
     pub(super) blend: Blend,
     /// Place of the particles relative to the entity that they are frozen to.
     pub(super) frozen: Option<Affine3A>,
-    /// Whether it drives other meshes, in this frame.
-    pub(super) drives: bool,
+    /// Whether it drives other meshes, in this frame: its drawn positions are needed then, even if it is hidden.
+    pub(in crate::plugin::draw) drives: bool,
     /// Changes whenever it is drawn elsewhere.
-    pub(super) version: u32,
+    pub(in crate::plugin::draw) version: u32,
 }
 
 impl MeshDrawing {
@@ -87,11 +87,6 @@ impl MeshDrawing {
         self.tangents.write(vectors);
     }
 
-    /// In this frame the cloth drives another mesh, so its drawn positions are needed even if it is hidden.
-    pub(crate) fn drive(&mut self) {
-        self.drives = true;
-    }
-
     /// Shifts it with the world's origin, from one frame to another; `target` gives the current place of a target.
     pub(crate) fn shift(
         &mut self,
@@ -106,10 +101,5 @@ impl MeshDrawing {
     /// Whether it is drawn as this surface.
     pub(crate) fn is_of(&self, surface: &Arc<Surface>) -> bool {
         Arc::ptr_eq(&self.surface, surface)
-    }
-
-    /// Drawn positions of the particles, in the entity's frame, and a number that changes whenever they do.
-    pub(crate) fn drawn(&self) -> (u32, &[Vec3]) {
-        (self.version, &self.drawn)
     }
 }

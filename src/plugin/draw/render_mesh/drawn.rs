@@ -100,7 +100,7 @@ impl Driven {
         place: &GlobalTransform,
         at: &GlobalTransform,
     ) -> bool {
-        let (version, drawn) = cloth.drawn();
+        let (version, drawn) = (cloth.version, &cloth.drawn);
         let own = Affine3A::from(rigid(&place.affine()));
         let from_cloth = own.inverse() * at.affine();
         let scale = own.inverse() * place.affine();

@@ -198,7 +198,7 @@ fn bind(
                 if surface.is_empty() {
                     continue;
                 }
-                driving.drawing.drive();
+                driving.drawing.drives = true;
                 let is_bound = each.state.is_some_and(|state| {
                     let bound = state.bound.as_ref();
                     bound.is_some_and(|to| to.cloth == cloth && Arc::ptr_eq(&to.surface, &surface))

@@ -59,7 +59,7 @@ pub(crate) fn prepare_colliders(
         if outcome.is_err() {
             *motion = ColliderMotion::default();
         }
-        tree.set(entity, motion.held_by());
+        tree.set(entity, motion.bounds);
         // A mesh asset has to be loaded, and may change.
         if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
             moving.push(entity);

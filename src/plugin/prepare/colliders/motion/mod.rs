@@ -40,7 +40,7 @@ pub(crate) struct ColliderMotion {
     /// Normal of a half-space that does not rotate: cloth far above it is not near.
     normal: Option<Vec3>,
     /// Its bounds along the whole path.
-    bounds: Bounds,
+    pub(super) bounds: Bounds,
     /// How many cloths pushed it in the last tick, if it is a body.
     cloths: u32,
     /// Its shape.
@@ -275,12 +275,6 @@ impl ColliderMotion {
         self.last = None;
         self.skinned.stop();
     }
-
-    /// Its bounds along the whole path, for the tree of all colliders.
-    pub fn held_by(&self) -> Bounds {
-        self.bounds
-    }
-
     /// Whether the collider may come within `reach` of a point of the world (m).
     pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
         let offset = point - self.middle;
