@@ -43,6 +43,7 @@ pub use material_map::{ClothFactor, ClothMaterialMap};
 pub use particle_id::ParticleId;
 pub use particles::{ClothParticles, ParticleError};
 pub use pins::{Corner, Pin, PinError, PinPredicate, Pins, RestPredicate};
+pub(crate) use quantity::Allowed;
 pub use quantity::QuantityError;
 pub use recipe::{Cloth, ClothShape};
 pub use rope::{RopePath, RopeShape};

@@ -39,3 +39,27 @@ impl QuantityError {
         }
     }
 }
+
+/// The values that a quantity may have, by a test and in words.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Allowed(pub fn(f32) -> bool, pub &'static str);
+
+impl Allowed {
+    pub const FINITE: Self = Self(f32::is_finite, "finite");
+    pub const SIZE: Self = Self(|v| v >= 0.0 && v.is_finite(), "finite and 0 or more");
+    pub const SHARE: Self = Self(|v| (0.0..=1.0).contains(&v), "from 0 to 1");
+
+    /// Checks the values of a quantity.
+    ///
+    /// # Errors
+    /// [`QuantityError`] for the first that is not allowed.
+    pub fn check(
+        self,
+        quantity: &'static str,
+        values: impl IntoIterator<Item = f32>,
+    ) -> Result<(), QuantityError> {
+        let Self(test, expected) = self;
+        let check = |value| QuantityError::check(value, test, quantity, expected).map(drop);
+        values.into_iter().try_for_each(check)
+    }
+}

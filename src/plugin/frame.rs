@@ -13,22 +13,11 @@ use bevy::{
     },
     math::{Affine3A, Isometry3d, Vec3, Vec3A},
     reflect::{Reflect, std_traits::ReflectDefault},
-    transform::{
-        components::{GlobalTransform, Transform},
-        helper::TransformHelper,
-    },
+    transform::components::{GlobalTransform, Transform},
 };
 
 use super::naming::quoted;
 use crate::cloth::{ClothError, TransformError};
-
-/// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
-pub(crate) fn global_transform(
-    transforms: &TransformHelper,
-    entity: Entity,
-) -> Option<GlobalTransform> {
-    transforms.compute_global_transform(entity).ok()
-}
 
 /// The error of a global transform that can't be used.
 pub(crate) fn unusable(transform: impl Into<Affine3A>) -> ClothError {
@@ -128,6 +117,14 @@ impl ClothFrame {
         }
     }
 
+    /// The same of a place that may be the cloth's own, which went from `before` to `after`.
+    pub(crate) fn shifted_with(self, shift: Shift, [before, after]: [Self; 2]) -> Self {
+        match self == before {
+            true => after,
+            false => self.shifted(shift, None),
+        }
+    }
+
     /// The transform from the particles' frame to the world.
     pub fn isometry(&self) -> Isometry3d {
         self.isometry
@@ -164,28 +161,24 @@ impl Shift {
     /// The new place of something that was here before. If it differs from `now` by no more than rounding, it is `now`,
     /// so that whatever has only been shifted stands still.
     pub fn rigid(self, was: Isometry3d, now: Option<Isometry3d>) -> Isometry3d {
-        let shifted = Isometry3d {
-            translation: was.translation + Vec3A::from(self.0),
-            ..was
-        };
+        let translation = was.translation + Vec3A::from(self.0);
         let is_there = |now: &Isometry3d| {
             now.rotation == was.rotation
-                && self.is_rounded(was.translation, now.translation, shifted.translation)
+                && self.is_rounded(was.translation, now.translation, translation)
         };
-        now.filter(is_there).unwrap_or(shifted)
+        now.filter(is_there)
+            .unwrap_or(Isometry3d { translation, ..was })
     }
 
     /// The same with a scale.
     pub fn affine(self, was: Affine3A, now: Option<Affine3A>) -> Affine3A {
-        let shifted = Affine3A {
-            translation: was.translation + Vec3A::from(self.0),
-            ..was
-        };
+        let translation = was.translation + Vec3A::from(self.0);
         let is_there = |now: &Affine3A| {
             now.matrix3 == was.matrix3
-                && self.is_rounded(was.translation, now.translation, shifted.translation)
+                && self.is_rounded(was.translation, now.translation, translation)
         };
-        now.filter(is_there).unwrap_or(shifted)
+        now.filter(is_there)
+            .unwrap_or(Affine3A { translation, ..was })
     }
 
     /// Largest rounding error of positions about as far from the origin as `place` (m), before or after the jump. The

@@ -27,7 +27,7 @@ mod threads;
 mod write_back;
 
 use bevy::{
-    app::{FixedUpdate, PluginGroup, PluginGroupBuilder},
+    app::{PluginGroup, PluginGroupBuilder},
     ecs::{intern::Interned, schedule::ScheduleLabel},
 };
 
@@ -55,6 +55,7 @@ pub use draw::{ClothGizmos, ClothGizmosPlugin, ShowClothGizmos};
 pub use draw::{ClothMeshPlugin, ClothRenderMesh, ClothRenderMeshPlugin};
 pub use frame::ClothFrame;
 pub use sets::ClothSystems;
+use sets::runs_in_schedule;
 pub use simulation::ClothPlugin;
 pub use state::{
     ClothBuilt, ClothContact, ClothContacts, ClothFault, ClothScratch, ClothSearch, ClothState,
@@ -72,19 +73,9 @@ pub struct DrapePlugins {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for DrapePlugins {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
-}
-
-impl DrapePlugins {
+runs_in_schedule! {
     /// Runs the simulation in `schedule`.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    DrapePlugins
 }
 
 impl PluginGroup for DrapePlugins {

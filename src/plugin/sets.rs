@@ -20,3 +20,24 @@ pub enum ClothSystems {
     /// Writes messages and diagnostics.
     WriteBack,
 }
+
+/// A plugin whose field `schedule` is given to `new`, and is [`FixedUpdate`](bevy::app::FixedUpdate) by default.
+macro_rules! runs_in_schedule {
+    ($(#[$doc:meta])* $plugin:ident) => {
+        impl Default for $plugin {
+            fn default() -> Self {
+                Self::new(bevy::app::FixedUpdate)
+            }
+        }
+
+        impl $plugin {
+            $(#[$doc])*
+            pub fn new(schedule: impl bevy::ecs::schedule::ScheduleLabel) -> Self {
+                Self {
+                    schedule: schedule.intern(),
+                }
+            }
+        }
+    };
+}
+pub(super) use runs_in_schedule;

@@ -6,7 +6,7 @@ use bevy::{
     mesh::Mesh,
 };
 use bevy::{
-    app::{App, FixedUpdate, Last, Plugin},
+    app::{App, Last, Plugin},
     ecs::{
         bundle::Bundle,
         component::Component,
@@ -21,7 +21,6 @@ use bevy::{
             common_conditions::{any_with_component, resource_exists},
         },
         system::{Commands, Query},
-        world::World,
     },
     log::error,
     time::Time,
@@ -42,7 +41,7 @@ use super::{
     },
     reflection::register_with_lists,
     search::{query_collisions, rebuild_hierarchies},
-    sets::ClothSystems,
+    sets::{ClothSystems, runs_in_schedule},
     state::{
         ClothBuilt, ClothContacts, ClothFault, ClothParts, ClothSearch, ClothStats,
         ClothTouchStarted, ClothTouchStopped, Notices, OwnParts, SharedParts, WindField,
@@ -71,19 +70,9 @@ pub struct ClothPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for ClothPlugin {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
-}
-
-impl ClothPlugin {
+runs_in_schedule! {
     /// Runs its systems in `schedule`.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    ClothPlugin
 }
 
 impl Plugin for ClothPlugin {
@@ -139,9 +128,9 @@ fn register_types(app: &mut App) {
 }
 
 fn add_resources_and_observers(app: &mut App) {
-    add_parts_to_earlier::<Cloth, ClothParts>(app.world_mut());
-    add_parts_to_earlier::<ClothCollider, ColliderParts>(app.world_mut());
-    add_parts_to_earlier::<ClothWindZone, ClothOrder>(app.world_mut());
+    give_parts::<Cloth, ClothParts>(app);
+    give_parts::<ClothCollider, (ColliderMotion, ClothOrder)>(app);
+    give_parts::<ClothWindZone, ClothOrder>(app);
     app.init_resource::<ClothGravity>()
         .add_message::<ClothTouchStarted>()
         .add_message::<ClothTouchStopped>()
@@ -156,9 +145,6 @@ fn add_resources_and_observers(app: &mut App) {
         .init_resource::<WindField>()
         .init_resource::<ChangedColliders>()
         .init_resource::<Teleporting>()
-        .add_observer(add_parts::<Cloth, ClothParts>)
-        .add_observer(add_parts::<ClothCollider, ColliderParts>)
-        .add_observer(add_parts::<ClothWindZone, ClothOrder>)
         .add_observer(send_stopped_messages)
         .add_observer(clear_removed_cloth)
         .add_observer(clear_removed_collider)
@@ -248,21 +234,18 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
 }
 
 /// The components that it adds to a collider.
-type ColliderParts = (ColliderMotion, ClothOrder);
-
-/// Adds to a new cloth, collider or wind zone the components that it was not spawned with.
-fn add_parts<C: Component, Parts: Bundle + Default>(added: On<Add, C>, mut commands: Commands) {
-    commands
-        .entity(added.entity)
-        .try_insert_if_new(Parts::default());
-}
-
-/// The same for cloths and colliders that existed before the plugin.
-fn add_parts_to_earlier<C: Component, Parts: Bundle + Default>(world: &mut World) {
+/// Adds to each cloth, collider or wind zone the components that it was not spawned with: to those that existed before the
+/// plugin, and to new ones.
+fn give_parts<C: Component, Parts: Bundle + Default>(app: &mut App) {
+    let world = app.world_mut();
     let mut earlier = world.query_filtered::<Entity, With<C>>();
     for entity in earlier.iter(world).collect::<Vec<_>>() {
         world.entity_mut(entity).insert_if_new(Parts::default());
     }
+    app.add_observer(|added: On<Add, C>, mut commands: Commands| {
+        let mut entity = commands.entity(added.entity);
+        entity.try_insert_if_new(Parts::default());
+    });
 }
 
 /// Removes the plugin's components from an entity that is no cloth any more. Particles and settings stay, since they

@@ -3,7 +3,7 @@
 use bevy::{
     ecs::{
         component::Component,
-        entity::{Entity, EntityMapper, MapEntities},
+        entity::{Entity, MapEntities},
         reflect::{ReflectComponent, ReflectMapEntities},
     },
     math::Vec3,
@@ -54,13 +54,13 @@ pub struct ClothAttachment {
 }
 
 /// The entity that pins follow, or the cloth of a side of a [`ClothSeam`](crate::plugin::ClothSeam).
-#[derive(Reflect, Debug, Clone, PartialEq)]
+#[derive(Reflect, MapEntities, Debug, Clone, PartialEq)]
 #[type_path = "bevy_drape"]
 #[reflect(Default, Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ClothTarget {
     /// An entity.
-    Entity(Entity),
+    Entity(#[entities] Entity),
     /// The entity with this `Name`, for instance from a scene or a modelling program. If several have it, it is the one
     /// that has the nearest common ancestor with the cloth or the seam. So each copy of a character finds its own. Among
     /// equals it is the one with the lowest generation and index. Once found, it stays the same one while it has the name, whatever comes later.
@@ -72,14 +72,6 @@ impl Default for ClothTarget {
     /// An empty `Name`, which matches nothing until you set it.
     fn default() -> Self {
         Self::Named(String::new())
-    }
-}
-
-impl MapEntities for ClothTarget {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        if let Self::Entity(entity) = self {
-            *entity = mapper.get_mapped(*entity);
-        }
     }
 }
 

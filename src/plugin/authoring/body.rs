@@ -6,7 +6,10 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::{cloth::QuantityError, contact::BodyMass};
+use crate::{
+    cloth::{Allowed, QuantityError},
+    contact::BodyMass,
+};
 
 /// Lets cloth push a [`ClothCollider`](crate::contact::ClothCollider) back, by giving it a mass. Without this
 /// component, cloth never moves a collider. It moves no skinned mesh.
@@ -98,32 +101,20 @@ impl ClothBody {
     /// # Errors
     /// [`QuantityError`] for a value that is out of range.
     pub(crate) fn mass_at(&self, rotation: Quat) -> Result<BodyMass, QuantityError> {
-        let positive = |v: f32| v > 0.0 && v.recip().is_finite();
-        for moment in self.inertia.to_array() {
-            QuantityError::check(moment, positive, "the body's inertia (kg·m²)", "positive")?;
-        }
-        QuantityError::check(
-            self.centre_of_mass.length(),
-            f32::is_finite,
-            "the distance of the body's centre of mass from its entity (m)",
-            "finite",
-        )?;
-        QuantityError::check(
-            self.axes.length(),
+        let positive = Allowed(|v| v > 0.0 && v.recip().is_finite(), "positive");
+        let usable = Allowed(
             |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
-            "the length of the quaternion of the body's axes",
             "positive and finite",
-        )?;
-        let mass = QuantityError::check(
-            self.mass,
-            |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
-            "the body's mass (kg)",
-            "positive and finite",
-        )?;
-        let inverse = Mat3::from_diagonal(self.inertia.recip());
+        );
+        positive.check("the body's inertia (kg·m²)", self.inertia.to_array())?;
+        let quantity = "the distance of the body's centre of mass from its entity (m)";
+        Allowed::FINITE.check(quantity, [self.centre_of_mass.length()])?;
+        let quantity = "the length of the quaternion of the body's axes";
+        usable.check(quantity, [self.axes.length()])?;
+        usable.check("the body's mass (kg)", [self.mass])?;
         let body = BodyMass {
-            inverse_mass: mass.recip(),
-            inverse_inertia: inverse,
+            inverse_mass: self.mass.recip(),
+            inverse_inertia: Mat3::from_diagonal(self.inertia.recip()),
             centre: Vec3::ZERO,
             free: Mat3::IDENTITY,
             is_settled: false,

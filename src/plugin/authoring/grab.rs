@@ -13,7 +13,7 @@ use bevy::{
     transform::components::Transform,
 };
 
-use crate::cloth::{QuantityError, Surface};
+use crate::cloth::{Allowed, QuantityError, Surface};
 
 /// A hand that holds a particle of a cloth. Spawn it where a ray [hits](crate::plugin::ClothHit::grab) the cloth, move its
 /// [`target`](Self::target), and despawn it to let go.
@@ -85,19 +85,10 @@ impl ClothGrab {
     /// # Errors
     /// [`QuantityError`] for a value that is out of range.
     pub(crate) fn validate(&self) -> Result<(), QuantityError> {
-        let is_size = |v: f32| v >= 0.0 && v.is_finite();
-        for (value, quantity) in [
-            (self.stretch, "the stretch of a grab"),
-            (self.speed, "the speed of a grab (m/s)"),
-        ] {
-            QuantityError::check(value, is_size, quantity, "finite and 0 or more")?;
-        }
-        for component in self.target.to_array() {
-            let quantity = "the target of a grab (m)";
-            let is_near = |v: f32| v.abs() <= 1.0e12;
-            QuantityError::check(component, is_near, quantity, "within 10¹² m of the origin")?;
-        }
-        Ok(())
+        Allowed::SIZE.check("the stretch of a grab", [self.stretch])?;
+        Allowed::SIZE.check("the speed of a grab (m/s)", [self.speed])?;
+        let near = Allowed(|v| v.abs() <= 1.0e12, "within 10¹² m of the origin");
+        near.check("the target of a grab (m)", self.target.to_array())
     }
 }
 

@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{ClothError, QuantityError},
+    cloth::{Allowed, ClothError, QuantityError},
     plugin::frame::{ClothFrame, Shift, relative},
 };
 
@@ -71,22 +71,11 @@ impl ClothInertia {
     /// # Errors
     /// [`QuantityError`] for the first value that is not.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        for share in [self.linear, self.angular] {
-            let is_share = |v: f32| (0.0..=1.0).contains(&v);
-            QuantityError::check(
-                share,
-                is_share,
-                "the share of motion that is felt",
-                "from 0 to 1",
-            )?;
-        }
-        for (value, quantity) in [
-            (self.teleport_distance, "the teleport distance (m)"),
-            (self.teleport_angle, "the teleport angle (rad)"),
-        ] {
-            QuantityError::check(value, |v| v > 0.0, quantity, "positive")?;
-        }
-        Ok(())
+        let quantity = "the share of motion that is felt";
+        Allowed::SHARE.check(quantity, [self.linear, self.angular])?;
+        let positive = Allowed(|v| v > 0.0, "positive");
+        positive.check("the teleport distance (m)", [self.teleport_distance])?;
+        positive.check("the teleport angle (rad)", [self.teleport_angle])
     }
 }
 

@@ -9,7 +9,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::QuantityError;
+use crate::cloth::{Allowed, QuantityError};
 
 /// Largest number of ticks that a cloth may be simulated for at once: a quarter of a second at Bevy's 64 Hz.
 const MOST_TICKS: u32 = 16;
@@ -42,12 +42,12 @@ pub enum ClothLodLevel {
 impl ClothLodLevel {
     /// Order of the levels: a finer one is less.
     pub(crate) fn coarseness(self) -> u32 {
-        match self {
-            Self::Full => 1,
-            Self::Every(ticks) => ticks.max(1),
-            Self::Frozen => u32::MAX - 1,
-            Self::Off => u32::MAX,
-        }
+        let stands = if self == Self::Off {
+            u32::MAX
+        } else {
+            u32::MAX - 1
+        };
+        self.ticks().unwrap_or(stands)
     }
 
     /// The number of ticks in which it is simulated once; `None` if never.
@@ -144,37 +144,20 @@ impl ClothLod {
     /// # Errors
     /// [`QuantityError`] for the first value that is out of range.
     pub(crate) fn validate(&self) -> Result<(), QuantityError> {
-        let is_part = |part: f32| (0.0..1.0).contains(&part);
-        let expected = "from 0 to less than 1";
-        QuantityError::check(
-            self.hysteresis,
-            is_part,
-            "hysteresis of `ClothLod`",
-            expected,
-        )?;
-        let mut before = 0.0;
+        let part = Allowed(|v| (0.0..1.0).contains(&v), "from 0 to less than 1");
+        part.check("hysteresis of `ClothLod`", [self.hysteresis])?;
+        let (quantity, mut before) = ("a distance of `ClothLod` (m)", 0.0);
+        let farther = Allowed(|more| more >= 0.0, "no less than the one before");
         for (distance, _) in &self.distances {
-            let is_distance = |distance: f32| distance >= 0.0 && distance.is_finite();
-            let quantity = "a distance of `ClothLod` (m)";
-            QuantityError::check(*distance, is_distance, quantity, "finite and 0 or more")?;
-            QuantityError::check(
-                distance - before,
-                |more| more >= 0.0,
-                quantity,
-                "no less than the one before",
-            )?;
+            Allowed::SIZE.check(quantity, [*distance])?;
+            farther.check(quantity, [distance - before])?;
             before = *distance;
         }
+        let rate = Allowed(|v| (1.0..=MOST_TICKS as f32).contains(&v), "from 1 to 16");
         let levels = self.distances.iter().map(|(_, level)| *level);
         for level in levels.chain(self.level).chain([self.hidden]) {
             if let ClothLodLevel::Every(ticks) = level {
-                let is_rate = |ticks: f32| (1.0..=MOST_TICKS as f32).contains(&ticks);
-                QuantityError::check(
-                    ticks as f32,
-                    is_rate,
-                    "ticks of `ClothLodLevel::Every`",
-                    "from 1 to 16",
-                )?;
+                rate.check("ticks of `ClothLodLevel::Every`", [ticks as f32])?;
             }
         }
         Ok(())

@@ -19,8 +19,6 @@ mod lod;
 mod mesh;
 mod order;
 mod seam;
-#[cfg(feature = "mesh")]
-mod skeleton;
 mod wind;
 mod wind_zone;
 
@@ -37,13 +35,11 @@ pub use inertia::ClothInertia;
 pub(crate) use inertia::{Carried, RootMotion};
 pub use lod::{ClothLod, ClothLodLevel, GlobalClothLod};
 #[cfg(feature = "mesh")]
-pub use mesh::ClothMesh;
+pub use mesh::{ClothMesh, ClothSkeleton};
 pub use order::ClothOrder;
 pub(crate) use order::{Ordered, give_order};
 pub(crate) use seam::ClothStitches;
 pub use seam::{ClothSeam, ClothSeamSide};
-#[cfg(feature = "mesh")]
-pub use skeleton::ClothSkeleton;
 pub(crate) use wind::DENSITY;
 pub use wind::{ClothAir, ClothWind};
 pub(crate) use wind_zone::PlacedZone;

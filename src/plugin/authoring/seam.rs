@@ -13,7 +13,7 @@ use bevy::{
 
 use super::ClothTarget;
 use crate::{
-    cloth::{Pin, QuantityError, Surface},
+    cloth::{Allowed, Pin, QuantityError, Surface},
     solver::{Seam, SeamPull},
 };
 
@@ -143,18 +143,9 @@ impl ClothSeam {
     /// # Errors
     /// [`QuantityError`] for a value that is out of range.
     pub(crate) fn validate(&self) -> Result<(), QuantityError> {
-        let is_size = |v: f32| v >= 0.0 && v.is_finite();
-        for (value, quantity) in [
-            (self.seconds, "the time in which a seam closes (s)"),
-            (self.compliance, "the compliance of a seam (m²/N)"),
-        ] {
-            QuantityError::check(value, is_size, quantity, "finite and 0 or more")?;
-        }
-        for end in self.sewn {
-            let quantity = "an end of the part of a seam that is sewn (1)";
-            QuantityError::check(end, |v| (0.0..=1.0).contains(&v), quantity, "from 0 to 1")?;
-        }
-        Ok(())
+        Allowed::SIZE.check("the time in which a seam closes (s)", [self.seconds])?;
+        Allowed::SIZE.check("the compliance of a seam (m²/N)", [self.compliance])?;
+        Allowed::SHARE.check("an end of the part of a seam that is sewn (1)", self.sewn)
     }
 
     /// Its numbers, for the solver.

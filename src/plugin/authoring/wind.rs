@@ -10,7 +10,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::QuantityError;
+use crate::cloth::{Allowed, QuantityError};
 
 /// Of air at 20 °C and sea level (kg/m³).
 pub(crate) const DENSITY: f32 = 1.2;
@@ -90,19 +90,11 @@ impl ClothWind {
     /// [`QuantityError`] for the first value that is not.
     pub fn validate(&self) -> Result<(), QuantityError> {
         check_velocity(self.velocity)?;
-        let density = "density of the air (kg/m³)";
-        QuantityError::check(self.density, is_moderate, density, "from 0 to 10⁶")?;
-        for (part, quantity) in [(self.gusts, "gusts"), (self.turbulence, "turbulence")] {
-            QuantityError::check(part, is_moderate, quantity, "from 0 to 10⁶")?;
-        }
-        for (value, quantity) in [
-            (self.gust_period, "period of gusts (s)"),
-            (self.turbulence_length, "length of turbulence (m)"),
-        ] {
-            let is_some = |v: f32| (1.0e-6..=1.0e12).contains(&v);
-            QuantityError::check(value, is_some, quantity, "from 10⁻⁶ to 10¹²")?;
-        }
-        Ok(())
+        MODERATE.check("density of the air (kg/m³)", [self.density])?;
+        MODERATE.check("gusts", [self.gusts])?;
+        MODERATE.check("turbulence", [self.turbulence])?;
+        LARGE.check("period of gusts (s)", [self.gust_period])?;
+        LARGE.check("length of turbulence (m)", [self.turbulence_length])
     }
 }
 
@@ -138,26 +130,18 @@ impl ClothAir {
     /// # Errors
     /// [`QuantityError`] for the first value that is not.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        let range = "from 0 to 10⁶";
-        QuantityError::check(self.drag, is_moderate, "coefficient of drag", range)?;
-        QuantityError::check(self.lift, is_moderate, "coefficient of lift", range)?;
+        MODERATE.check("coefficient of drag", [self.drag])?;
+        MODERATE.check("coefficient of lift", [self.lift])?;
         self.velocity.map_or(Ok(()), check_velocity)
     }
 }
 
-fn is_moderate(value: f32) -> bool {
-    (0.0..=1.0e6).contains(&value)
-}
+const MODERATE: Allowed = Allowed(|v| (0.0..=1.0e6).contains(&v), "from 0 to 10⁶");
+
+/// Lengths and times that may be divided by.
+pub(super) const LARGE: Allowed = Allowed(|v| (1.0e-6..=1.0e12).contains(&v), "from 10⁻⁶ to 10¹²");
 
 pub(crate) fn check_velocity(velocity: Vec3) -> Result<(), QuantityError> {
-    for value in velocity.to_array() {
-        let is_moderate = |v: f32| v.abs() <= 1.0e6;
-        QuantityError::check(
-            value,
-            is_moderate,
-            "velocity of the air (m/s)",
-            "finite, and at most 10⁶",
-        )?;
-    }
-    Ok(())
+    let moderate = Allowed(|v| v.abs() <= 1.0e6, "finite, and at most 10⁶");
+    moderate.check("velocity of the air (m/s)", velocity.to_array())
 }

@@ -1,14 +1,18 @@
 //! Local winds.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
+    ecs::{
+        component::Component,
+        entity::{Entity, MapEntities},
+        reflect::ReflectComponent,
+    },
     math::{Affine3A, Quat, Vec3},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::wind::check_velocity;
+use super::wind::{LARGE, check_velocity};
 use crate::{
-    cloth::{ClothError, QuantityError},
+    cloth::{Allowed, ClothError, QuantityError},
     plugin::frame::{Places, Shift, unusable},
 };
 
@@ -78,28 +82,24 @@ impl Default for ClothWindZone {
 impl ClothWindZone {
     /// A wind in a ball with this radius (m), with this velocity (m/s).
     pub fn ball(radius: f32, velocity: Vec3) -> Self {
-        Self {
-            shape: ClothWindShape::Ball { radius },
-            velocity,
-            ..Self::default()
-        }
+        Self::of(ClothWindShape::Ball { radius }, velocity)
     }
 
     /// A wind in a box with these half side lengths (m), with this velocity (m/s).
     pub fn cuboid(half_size: Vec3, velocity: Vec3) -> Self {
-        Self {
-            shape: ClothWindShape::Cuboid { half_size },
-            velocity,
-            ..Self::default()
-        }
+        Self::of(ClothWindShape::Cuboid { half_size }, velocity)
     }
 
     /// A fan that blows forward, along −z: with `speed` (m/s) at the fan, falling to zero at this `length` (m) and at
     /// this `angle` (rad) from its axis.
     pub fn fan(length: f32, angle: f32, speed: f32) -> Self {
+        Self::of(ClothWindShape::Cone { length, angle }, Vec3::NEG_Z * speed)
+    }
+
+    fn of(shape: ClothWindShape, velocity: Vec3) -> Self {
         Self {
-            shape: ClothWindShape::Cone { length, angle },
-            velocity: Vec3::NEG_Z * speed,
+            shape,
+            velocity,
             ..Self::default()
         }
     }
@@ -110,33 +110,18 @@ impl ClothWindZone {
     /// [`QuantityError`] for the first value that is not.
     pub fn validate(&self) -> Result<(), QuantityError> {
         check_velocity(self.velocity)?;
-        let softness = "softness of a wind zone";
-        QuantityError::check(
-            self.softness,
-            |s| (0.0..=1.0).contains(&s),
-            softness,
-            "from 0 to 1",
-        )?;
+        Allowed::SHARE.check("softness of a wind zone", [self.softness])?;
         let lengths = match self.shape {
             ClothWindShape::Ball { radius } => Vec3::splat(radius),
             ClothWindShape::Cuboid { half_size } => half_size,
             ClothWindShape::Cone { length, angle } => {
                 let is_acute = |a: f32| a > 0.0 && a < std::f32::consts::FRAC_PI_2;
-                let quantity = "angle of a wind zone (rad)";
-                QuantityError::check(angle, is_acute, quantity, "positive, and less than π/2")?;
+                let acute = Allowed(is_acute, "positive, and less than π/2");
+                acute.check("angle of a wind zone (rad)", [angle])?;
                 Vec3::splat(length)
             }
         };
-        for length in lengths.to_array() {
-            let is_some = |l: f32| (1.0e-6..=1.0e12).contains(&l);
-            QuantityError::check(
-                length,
-                is_some,
-                "size of a wind zone (m)",
-                "from 10⁻⁶ to 10¹²",
-            )?;
-        }
-        Ok(())
+        LARGE.check("size of a wind zone (m)", lengths.to_array())
     }
 }
 
@@ -170,9 +155,10 @@ impl ClothWindShape {
 }
 
 /// A zone at its place in the tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(MapEntities, Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PlacedZone {
+    #[entities]
     pub entity: Entity,
     zone: ClothWindZone,
     from_world: Affine3A,
@@ -231,11 +217,13 @@ impl PlacedZone {
     /// Its velocity at a position in the world (m/s): the full velocity, less `3 s² − 2 s³` of it, with s the fraction
     /// of the soft border.
     pub fn at(&self, place: Vec3) -> Vec3 {
-        let depth = self
-            .zone
-            .shape
-            .depth(self.from_world.transform_point3(place));
-        let inner = 1.0 - self.softness();
+        let place = self.from_world.transform_point3(place);
+        let depth = self.zone.shape.depth(place);
+        // A fan's wind falls off all along its way.
+        let inner = match self.zone.shape {
+            ClothWindShape::Cone { .. } => 0.0,
+            _ => 1.0 - self.zone.softness,
+        };
         if depth <= inner {
             return self.velocity;
         }
@@ -249,13 +237,5 @@ impl PlacedZone {
     /// Its speed in the middle (m/s).
     pub fn fastest(&self) -> f32 {
         self.velocity.length()
-    }
-
-    /// A fan's wind falls off all along its way.
-    fn softness(&self) -> f32 {
-        match self.zone.shape {
-            ClothWindShape::Cone { .. } => 1.0,
-            _ => self.zone.softness,
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! Figures for Bevy's `DiagnosticsStore`.
 
 use bevy::{
-    app::{App, FixedUpdate, Plugin},
+    app::{App, Plugin},
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
     ecs::{
         intern::Interned,
@@ -13,7 +13,7 @@ use bevy::{
 use crate::{
     hierarchy::{BoundRule, SearchMethod},
     plugin::{
-        sets::ClothSystems,
+        sets::{ClothSystems, runs_in_schedule},
         state::{ClothState, ClothStats},
         write_back::report_limits,
     },
@@ -26,10 +26,9 @@ pub struct ClothDiagnosticsPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for ClothDiagnosticsPlugin {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
+runs_in_schedule! {
+    /// Runs its system in `schedule`, which must be that of [`ClothPlugin`](crate::plugin::ClothPlugin).
+    ClothDiagnosticsPlugin
 }
 
 impl ClothDiagnosticsPlugin {
@@ -64,32 +63,48 @@ impl ClothDiagnosticsPlugin {
     /// The largest stretch of a structural spring (%).
     pub const STRETCH: DiagnosticPath = DiagnosticPath::const_new("cloth/stretch");
 
-    /// Runs its system in `schedule`, which must be that of [`ClothPlugin`](crate::plugin::ClothPlugin).
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    const TIMES: [(DiagnosticPath, Figure); 3] = [
+        (Self::INTEGRATE, |of| of.integrate_ms),
+        (Self::REBUILD, |of| of.rebuild_ms),
+        (Self::QUERY, |of| of.query_ms),
+    ];
+    const COUNTS: [(DiagnosticPath, Figure); 11] = [
+        (Self::COLLIDERS_NEAR, |of| of.colliders_near as f64),
+        (Self::BY_TRIANGLES, |of| of.by_triangles as f64),
+        (Self::SCANS, |of| {
+            searched(of, |by| by == SearchMethod::Scan)
+        }),
+        (Self::SEARCHES, |of| {
+            searched(of, |by| by.rule() == Some(BoundRule::RestShape))
+        }),
+        (Self::REFITS, |of| {
+            searched(of, |by| {
+                by.rule().is_some_and(|rule| rule != BoundRule::RestShape)
+            })
+        }),
+        (Self::REQUERIES, |of| of.requeries.into()),
+        (Self::NODES_VISITED, |of| of.nodes_visited as f64),
+        (Self::LEAF_TESTS, |of| of.leaf_tests as f64),
+        (Self::CONTACTS, |of| of.contacts as f64),
+        (Self::SUBSTEPS, |of| of.substeps.into()),
+        (Self::ASLEEP, |of| u8::from(of.is_asleep).into()),
+    ];
+}
+
+/// A figure of one cloth.
+type Figure = fn(&ClothStats) -> f64;
+
+/// 1 for a cloth near colliders whose method of search `is_it`, else 0.
+fn searched(stats: &ClothStats, is_it: impl Fn(SearchMethod) -> bool) -> f64 {
+    u8::from(stats.colliders_near > 0 && is_it(stats.search)).into()
 }
 
 impl Plugin for ClothDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
-        for path in [Self::INTEGRATE, Self::REBUILD, Self::QUERY] {
+        for (path, _) in Self::TIMES {
             app.register_diagnostic(Diagnostic::new(path).with_suffix(" ms"));
         }
-        for path in [
-            Self::COLLIDERS_NEAR,
-            Self::BY_TRIANGLES,
-            Self::SCANS,
-            Self::SEARCHES,
-            Self::REFITS,
-            Self::REQUERIES,
-            Self::NODES_VISITED,
-            Self::LEAF_TESTS,
-            Self::CONTACTS,
-            Self::SUBSTEPS,
-            Self::ASLEEP,
-        ] {
+        for (path, _) in Self::COUNTS {
             app.register_diagnostic(Diagnostic::new(path));
         }
         app.register_diagnostic(Diagnostic::new(Self::STRETCH).with_suffix(" %"));
@@ -101,54 +116,14 @@ impl Plugin for ClothDiagnosticsPlugin {
 }
 
 fn measure(cloths: Query<(&ClothState, &ClothStats)>, mut diagnostics: Diagnostics) {
-    let valid = || {
-        cloths
-            .iter()
-            .filter(|(state, _)| state.is_valid)
-            .map(|(_, stats)| stats)
-    };
     type Plugin = ClothDiagnosticsPlugin;
-    let sum = |figure: fn(&ClothStats) -> f64| valid().map(figure).sum::<f64>();
-    diagnostics.add_measurement(&Plugin::INTEGRATE, || sum(|stats| stats.integrate_ms));
-    diagnostics.add_measurement(&Plugin::REBUILD, || sum(|stats| stats.rebuild_ms));
-    diagnostics.add_measurement(&Plugin::QUERY, || sum(|stats| stats.query_ms));
-    diagnostics.add_measurement(&Plugin::NODES_VISITED, || {
-        sum(|stats| stats.nodes_visited as f64)
-    });
-    diagnostics.add_measurement(&Plugin::LEAF_TESTS, || sum(|stats| stats.leaf_tests as f64));
-    let count = |method: fn(SearchMethod) -> bool| {
-        let is_searched = |stats: &&ClothStats| stats.colliders_near > 0 && method(stats.search);
-        valid().filter(is_searched).count() as f64
-    };
-    diagnostics.add_measurement(&Plugin::SCANS, || {
-        count(|method| method == SearchMethod::Scan)
-    });
-    diagnostics.add_measurement(&Plugin::SEARCHES, || {
-        count(|method| method.rule() == Some(BoundRule::RestShape))
-    });
-    diagnostics.add_measurement(&Plugin::REFITS, || {
-        count(|method| {
-            method
-                .rule()
-                .is_some_and(|rule| rule != BoundRule::RestShape)
-        })
-    });
-    diagnostics.add_measurement(&Plugin::COLLIDERS_NEAR, || {
-        sum(|stats| stats.colliders_near as f64)
-    });
-    diagnostics.add_measurement(&Plugin::BY_TRIANGLES, || {
-        sum(|stats| stats.by_triangles as f64)
-    });
-    diagnostics.add_measurement(&Plugin::REQUERIES, || {
-        sum(|stats| f64::from(stats.requeries))
-    });
-    diagnostics.add_measurement(&Plugin::CONTACTS, || sum(|stats| stats.contacts as f64));
-    diagnostics.add_measurement(&Plugin::SUBSTEPS, || sum(|stats| f64::from(stats.substeps)));
-    diagnostics.add_measurement(&Plugin::ASLEEP, || {
-        sum(|stats| f64::from(u8::from(stats.is_asleep)))
-    });
+    let valid = cloths.iter().filter(|(state, _)| state.is_valid);
+    let valid = valid.map(|(_, stats)| stats);
+    for (path, figure) in Plugin::TIMES.into_iter().chain(Plugin::COUNTS) {
+        diagnostics.add_measurement(&path, || valid.clone().map(figure).sum());
+    }
     diagnostics.add_measurement(&Plugin::STRETCH, || {
-        let stretch = valid().map(|stats| f64::from(stats.stretch.structural));
+        let stretch = valid.map(|stats| f64::from(stats.stretch.structural));
         100.0 * stretch.fold(0.0, f64::max)
     });
 }

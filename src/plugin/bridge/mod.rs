@@ -14,8 +14,6 @@ mod panel;
 mod picking;
 #[cfg(feature = "rapier")]
 mod rapier;
-#[cfg(feature = "rapier")]
-mod rapier_body;
 mod ray_cast;
 mod snapshot;
 mod surface_now;
@@ -32,8 +30,6 @@ pub use panel::{ClothPanel, ClothPanelPlugin};
 #[cfg(feature = "picking")]
 pub use picking::ClothPickingPlugin;
 #[cfg(feature = "rapier")]
-pub use rapier::{ClothRapierPlugin, RapierClothCollider};
-#[cfg(feature = "rapier")]
-pub use rapier_body::ClothPushBack;
+pub use rapier::{ClothPushBack, ClothRapierPlugin, RapierClothCollider};
 pub use ray_cast::{ClothHit, ClothRayCast};
 pub use snapshot::{ClothSnapshot, ClothWorldSnapshot, SnapshotError};

@@ -15,7 +15,7 @@ use bevy::{
 #[cfg(feature = "mesh")]
 use crate::plugin::draw::MeshDrawing;
 use crate::{
-    cloth::QuantityError,
+    cloth::{Allowed, QuantityError},
     plugin::{
         authoring::{ClothGrab, ClothWindZone, PlacedZone, RootMotion},
         frame::{ClothFrame, Places, Shift, rigid},
@@ -53,10 +53,7 @@ use crate::{
 /// }
 /// ```
 pub fn shift_cloths(world: &mut World, by: Vec3) -> Result<(), QuantityError> {
-    for component in by.to_array() {
-        let quantity = "jump of the world's origin (m)";
-        QuantityError::check(component, f32::is_finite, quantity, "finite")?;
-    }
+    Allowed::FINITE.check("jump of the world's origin (m)", by.to_array())?;
     // A world without the plugin remembers nothing.
     if world.contains_resource::<WindField>() {
         let shifted = world.run_system_once_with(shift, Shift(by));

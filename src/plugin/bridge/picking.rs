@@ -150,20 +150,15 @@ impl Pickables<'_, '_> {
 
     /// Whether a camera of these layers shows a cloth, or a mesh that it drives, to pointers.
     fn is_seen(&self, cloth: Entity, layers: &RenderLayers) -> bool {
-        self.is_hoverable(cloth)
-            && (self.is_shown(cloth, layers) || self.is_mesh_seen(cloth, layers))
-    }
-
-    #[cfg(feature = "mesh")]
-    fn is_mesh_seen(&self, cloth: Entity, layers: &RenderLayers) -> bool {
         let is_seen = |mesh| self.is_hoverable(mesh) && self.is_shown(mesh, layers);
-        let mut driven = self.driven.iter();
-        driven.any(|(mesh, drives)| drives.cloth == cloth && is_seen(mesh))
-    }
-
-    #[cfg(not(feature = "mesh"))]
-    fn is_mesh_seen(&self, _: Entity, _: &RenderLayers) -> bool {
-        false
+        #[cfg(feature = "mesh")]
+        let is_mesh_seen = || {
+            let mut driven = self.driven.iter();
+            driven.any(|(mesh, drives)| drives.cloth == cloth && is_seen(mesh))
+        };
+        #[cfg(not(feature = "mesh"))]
+        let is_mesh_seen = || false;
+        is_seen(cloth) || self.is_hoverable(cloth) && is_mesh_seen()
     }
 
     /// The cloth that an entity is, or that drives its mesh.

@@ -332,19 +332,12 @@ fn draw_volume(
             let rotation = Quat::from_mat3(&obb.axes);
             draw_box(Isometry3d::new(obb.centre, rotation), 2.0 * obb.half_size);
         }
-        other => draw_faces(&other.faces(), frame, color, gizmos),
-    }
-}
-
-fn draw_faces(
-    faces: &[Vec<Vec3>],
-    frame: Isometry3d,
-    color: Color,
-    gizmos: &mut Gizmos<ClothGizmos>,
-) {
-    for face in faces {
-        let corners = face.iter().chain(face.first());
-        gizmos.linestrip(corners.map(|&corner| frame * corner), color);
+        other => {
+            for face in other.faces() {
+                let corners = face.iter().chain(face.first());
+                gizmos.linestrip(corners.map(|&corner| frame * corner), color);
+            }
+        }
     }
 }
 

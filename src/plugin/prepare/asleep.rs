@@ -2,11 +2,11 @@
 
 use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
 
-use super::preparing::{NO_PINS, PrepareQueryItem, Surroundings};
+use super::preparing::{PrepareQueryItem, Surroundings};
 use crate::{
     cloth::ClothParticles,
     plugin::{
-        frame::{ClothFrame, global_transform},
+        frame::ClothFrame,
         state::{ClothBuilt, GameForces, Inputs},
     },
 };
@@ -19,51 +19,38 @@ pub(super) fn sleeps_as_it_was(
     forces: GameForces,
     seconds: f32,
 ) -> bool {
-    let Surroundings {
-        targets,
-        sources,
-        field,
-        ..
-    } = around;
     let (state, built) = (&*cloth.state, &*cloth.built);
     if !(state.rest.is_asleep() && state.is_valid && cloth.stats.is_asleep) {
         return false;
     }
     let source = built.source();
-    let pins = cloth.game.pins.unwrap_or(&NO_PINS);
+    let changes = cloth.game.changes();
     // If something wakes it in this tick, it continues with the step that it would have been prepared with.
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
         && state.inputs.known == Some(*inputs)
         && state.inputs.written == Some(cloth.particles.last_changed())
         && state.attachments.given.is_empty()
-        && cloth
-            .game
-            .attachments
-            .is_none_or(|attachments| attachments.as_slice().is_empty())
+        && cloth.game.attachments().is_empty()
         && cloth.game.teleport.is_none()
         && !around.roots.jumps(cloth.entity)
         && is_in_same_pose(cloth, around)
         && cloth.fault.is_none()
-        && built.has_grain(cloth.game.grain())
-        && built.is_torn_by(cloth.game.tears())
-        && built.is_made_from(
-            cloth.game.cloth.last_changed(),
-            cloth.game.mapped(),
-            &inputs.material,
-            pins,
-        )
-        && sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
+        && built.has_grain(cloth.game.grain(), changes.grain)
+        && built.is_torn_by(cloth.game.tears(), changes.tears)
+        && built.is_made_from(&changes, &inputs.material, cloth.game.pins())
+        && around.sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
         && forces.on(built.surface()).is_ok_and(|forces| {
             let ball = || ball(built, &cloth.particles, state.stretch.bound, &cloth.frame);
-            state.inputs.forces.is_still(forces, field, ball)
+            state.inputs.forces.is_still(forces, &around.field, ball)
         })
-        && (targets.cloths.of(cloth.entity)).is_ok_and(|transform| cloth.frame.is_of(&transform))
+        && (around.targets.cloths.of(cloth.entity))
+            .is_ok_and(|transform| cloth.frame.is_of(&transform))
 }
 
 /// Whether its pose is the same as in the last tick, or it follows none.
 fn is_in_same_pose(cloth: &PrepareQueryItem, around: &Surroundings) -> bool {
-    let place = |joint| global_transform(&around.targets.transforms, joint);
+    let place = |joint| around.targets.place(joint);
     match (&cloth.game.skin, &cloth.built.skin) {
         (None, None) => true,
         (Some(skin), Some(known)) => {

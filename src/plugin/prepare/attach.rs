@@ -1,109 +1,35 @@
-//! Finds the targets of attachments, and makes pins follow them.
+//! Makes pins follow the targets of attachments.
 
-use bevy::{
-    ecs::{change_detection::Mut, entity::Entity, system::SystemParam},
-    math::Affine3A,
-    transform::helper::TransformHelper,
-};
-
-use super::{carry::set_motion, named::NamedTargets};
+use super::{carry::set_motion, preparing::PrepareQueryItem};
 use crate::{
-    cloth::{ClothError, ClothParticles, Surface, TargetError},
     plugin::{
-        authoring::{Attached, ClothAttachment},
-        frame::{ClothFrame, Places, global_transform, rigid},
-        state::{ClothBuilt, ClothState},
+        authoring::Attached,
+        frame::{ClothFrame, rigid},
+        state::ClothScratch,
     },
     solver::PinMotion,
 };
 
-/// Transforms and names of entities.
-#[derive(SystemParam)]
-pub(crate) struct Targets<'w, 's> {
-    pub transforms: TransformHelper<'w, 's>,
-    /// Where cloths are, also below what is disabled.
-    pub cloths: Places<'w, 's>,
-    named: NamedTargets<'w, 's, ()>,
-}
-
-impl Targets<'_, '_> {
-    /// The entity that an attachment of `cloth` names; `known` is the one that it was in the last tick.
-    fn entity(
-        &self,
-        cloth: Entity,
-        attachment: &ClothAttachment,
-        known: Option<Entity>,
-    ) -> Result<Entity, TargetError> {
-        let exists = |entity| global_transform(&self.transforms, entity).is_some();
-        let pin = || format!("{:?}", attachment.pin);
-        (self.named).find(&attachment.target, cloth, known, exists, pin)
-    }
-
-    /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
-    ///
-    /// # Errors
-    /// [`TargetError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
-    /// [`TargetError::NoTargetNamed`]; or the error of a pin.
-    pub fn find(
-        &self,
-        cloth: Entity,
-        attachments: &[ClothAttachment],
-        known: &[ClothAttachment],
-        surface: &Surface,
-        entities: &mut Vec<Entity>,
-        places: &mut Vec<Affine3A>,
-    ) -> Result<(), ClothError> {
-        places.clear();
-        // Known attachments were valid.
-        if attachments != known {
-            attachments
-                .iter()
-                .try_for_each(|each| each.pin.validate(surface))?;
-        }
-        for (index, attachment) in attachments.iter().enumerate() {
-            let target = self.entity(cloth, attachment, entities.get(index).copied())?;
-            let transform = global_transform(&self.transforms, target);
-            let affine = transform.map(|transform| transform.affine());
-            let place = affine.filter(|affine| affine.inverse().is_finite());
-            places.push(place.ok_or_else(|| TargetError::NoTarget {
-                pin: format!("{:?}", attachment.pin),
-                target,
-            })?);
-            if index < entities.len() {
-                entities[index] = target;
-            } else {
-                entities.push(target);
-            }
-        }
-        entities.truncate(attachments.len());
-        Ok(())
-    }
-}
-
 /// Moves attached particles with their targets in this tick, by `motions`. A teleport moves them at once, from the
 /// frame that the cloth had before, and the other particles with them.
-pub(crate) fn follow_targets(
-    wanted: &[ClothAttachment],
-    places: &[Affine3A],
-    frame: ClothFrame,
-    teleport_from: Option<ClothFrame>,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-    motions: &mut Vec<PinMotion>,
-) {
+pub(crate) fn follow_targets(cloth: &mut PrepareQueryItem, teleport_from: Option<ClothFrame>) {
+    let (wanted, known) = (cloth.game.attachments(), &cloth.state.attachments);
     // A snapshot may hold attachments that the game does not have.
-    let is_free = state.attachments.given.is_empty() && state.attachments.attached.is_empty();
-    if wanted.is_empty() && is_free {
+    if wanted.is_empty() && known.given.is_empty() && known.attached.is_empty() {
         return;
     }
-    if state.attachments.given != wanted || wanted.is_empty() {
-        attach(wanted, places, frame, particles, built, state);
+    if known.given != wanted || wanted.is_empty() {
+        attach(cloth);
         // Released particles are not carried along.
-        let is_held =
-            |motion: &PinMotion| particles.inverse_mass(motion.particle as usize) == Some(0.0);
-        motions.retain(is_held);
+        let mass = |motion: &PinMotion| cloth.particles.inverse_mass(motion.particle as usize);
+        (cloth.scratch.pins).retain(|motion| mass(motion) == Some(0.0));
     }
+    let (particles, state, frame) = (&mut cloth.particles, &mut *cloth.state, &*cloth.frame);
+    let ClothScratch {
+        targets: places,
+        pins: motions,
+        ..
+    } = &mut *cloth.scratch;
     if let Some(first) = places.first() {
         let pose = rigid(first);
         let was = state.attachments.first_target.replace(pose);
@@ -133,14 +59,13 @@ pub(crate) fn follow_targets(
 }
 
 /// Takes over changed attachments. Attachments that stay keep their offsets; released particles get their mass back.
-fn attach(
-    wanted: &[ClothAttachment],
-    places: &[Affine3A],
-    frame: ClothFrame,
-    particles: &mut ClothParticles,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) {
+fn attach(cloth: &mut PrepareQueryItem) {
+    let (wanted, places, frame) = (
+        cloth.game.attachments(),
+        &cloth.scratch.targets,
+        &cloth.frame,
+    );
+    let (particles, built, state) = (&mut *cloth.particles, &mut *cloth.built, &mut *cloth.state);
     let before = std::mem::take(&mut state.attachments.attached);
     let known = std::mem::take(&mut state.attachments.given);
     for (attachment, each) in wanted.iter().enumerate() {

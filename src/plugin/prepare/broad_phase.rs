@@ -2,14 +2,12 @@
 
 use bevy::math::Vec3;
 
+use super::preparing::PrepareQueryItem;
 use crate::{
-    cloth::{ClothParticles, Surface},
+    cloth::Surface,
     contact::{ContactSettings, NarrowPhase},
     hierarchy::{SearchMethod, SearchReason},
-    plugin::{
-        frame::ClothFrame,
-        state::{BroadPhaseBounds, ClothBuilt, ClothScratch, ClothSearch, ClothState, ClothStats},
-    },
+    plugin::state::{BroadPhaseBounds, ClothBuilt, ClothState, ClothStats},
     solver::PinMotion,
 };
 
@@ -39,18 +37,12 @@ pub(crate) fn cover(settings: &ContactSettings, stretch: f32, built: &ClothBuilt
 }
 
 /// Sets the region in which the cloth may touch anything in the tick. Nothing counts as near until it is found.
-pub(crate) fn update_bounds(
-    particles: &ClothParticles,
-    frame: &ClothFrame,
-    built: &ClothBuilt,
-    state: &mut ClothState,
-    scratch: &mut ClothScratch,
-    search: &mut ClothSearch,
-    bounds: &mut BroadPhaseBounds,
-) {
+pub(super) fn update_bounds(cloth: &mut PrepareQueryItem) {
+    let (built, bounds) = (&*cloth.built, &mut *cloth.bounds);
+    let (state, scratch) = (&mut *cloth.state, &mut *cloth.scratch);
     let stretch = state.stretch.bound;
-    let root = built.tree().root_sphere(particles, stretch);
-    let centre = frame.to_world(root.center.into());
+    let root = built.tree().root_sphere(&cloth.particles, stretch);
+    let centre = cloth.frame.to_world(root.center.into());
     let settings = &scratch.contact_settings;
     let around = scratch.reach + settings.particle_radius + cover(settings, stretch, built);
     let is_asleep = state.rest.is_asleep();
@@ -65,7 +57,7 @@ pub(crate) fn update_bounds(
         }
         state.resting.on.clear();
         if is_stale {
-            search.query.clear();
+            cloth.search.query.clear();
             is_stale = false;
         }
     }

@@ -1,32 +1,31 @@
 //! The inputs and the result of building a cloth.
 
-use bevy::{ecs::change_detection::Tick, math::Vec3};
+use bevy::{ecs::change_detection::Mut, math::Vec3};
 
+use super::source::Sources;
 use crate::{
     cloth::{
-        Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothTears,
-        MaterialFactors, PaintError, Pins, QuantityError, Surface,
+        Allowed, Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothParticles,
+        ClothShape, ClothTears, MaterialFactors, PaintError, Pins, Surface,
     },
     plugin::{
         authoring::ClothAttachment,
-        state::{BuildRequest, Recipe, Source},
+        state::{Changes, ClothBuilt, ClothState, SharedParts, Source},
     },
 };
 
 /// The game's description of a cloth. Removed components count as their defaults, and as no pins.
 pub(crate) struct BuildInputs<'a> {
     pub cloth: &'a Cloth,
-    /// When the cloth was last changed.
-    pub changed: Tick,
+    pub changes: Changes,
     /// Its mesh, if it is made from one.
     pub source: Option<Source>,
     pub material: &'a ClothMaterial,
-    /// The grain of a mesh with a weft, and when it was last changed.
-    pub grain: Option<(&'a ClothGrain, Option<Tick>)>,
-    /// The map of its material, and when that was last changed.
-    pub map: Option<(&'a ClothMaterialMap, Tick)>,
-    /// Its tears, and when they were last changed.
-    pub tears: Option<(&'a ClothTears, Tick)>,
+    /// The grain of a mesh with a weft.
+    pub grain: Option<&'a ClothGrain>,
+    /// The map of its material.
+    pub map: Option<&'a ClothMaterialMap>,
+    pub tears: &'a ClothTears,
     pub pins: &'a Pins,
     pub attachments: &'a [ClothAttachment],
     pub scale: Vec3,
@@ -37,63 +36,39 @@ pub(crate) struct BuildInputs<'a> {
 }
 
 impl BuildInputs<'_> {
-    /// When the map of its material was last changed.
-    pub(super) fn mapped(&self) -> Option<Tick> {
-        self.map.map(|(_, changed)| changed)
-    }
-
-    /// When its grain was last changed.
-    pub(super) fn grained(&self) -> Option<Tick> {
-        self.grain.and_then(|(_, changed)| changed)
-    }
-
-    /// When its tears were last changed.
-    pub(super) fn torn(&self) -> Option<Tick> {
-        self.tears.map(|(_, changed)| changed)
-    }
-
-    pub(super) fn tears(&self) -> ClothTears {
-        self.tears
-            .map_or_else(ClothTears::none, |(tears, _)| tears.clone())
-    }
-
-    /// The request to build a recipe in the background.
-    pub(super) fn request(&self, recipe: &Recipe) -> BuildRequest {
-        BuildRequest {
-            recipe: recipe.clone(),
-            material: *self.material,
-            map: self.map.map(|(map, _)| map.clone()),
-            before: None,
+    /// Calls `hold` for each particle that will be attached, and so pinned where it is.
+    pub(super) fn for_each_attached(&self, surface: &Surface, mut hold: impl FnMut(usize)) {
+        for attachment in self.attachments {
+            if attachment.pin.validate(surface).is_ok() {
+                attachment.pin.for_each(surface, &mut hold);
+            }
         }
     }
 
     /// Whether it is a grid whose springs differ or stiffen, which has the surface of a mesh. What is torn has it already.
     pub(super) fn is_as_mesh(&self) -> bool {
         let has_own_springs = || {
-            let of_map = |(map, _): (&ClothMaterialMap, Tick)| map.has_stiffness(self.material);
             let stiffening = self.material.stiffening;
-            stiffening.is_some_and(|of| of.factor != 1.0) || self.map.is_some_and(of_map)
+            stiffening.is_some_and(|of| of.factor != 1.0)
+                || self.map.is_some_and(|map| map.has_stiffness(self.material))
         };
-        let is_torn = self
-            .tears
-            .is_some_and(|(tears, _)| !tears.edges().is_empty());
+        let is_torn = !self.tears.edges().is_empty();
         matches!(self.cloth.shape, ClothShape::Grid(_)) && !is_torn && has_own_springs()
     }
 
     /// Checks the material.
     ///
     /// # Errors
-    /// Those of [`ClothMaterial::validate`]; [`QuantityError`] for a rope that stiffens.
+    /// Those of [`ClothMaterial::validate`]; [`QuantityError`](crate::cloth::QuantityError) for a rope that stiffens.
     pub(super) fn check_material(&self) -> Result<(), ClothError> {
         self.material.validate()?;
-        match self.material.stiffening {
-            Some(stiffening) if self.cloth.shape.is_rope() => {
-                let quantity = "factor by which a rope stiffens";
-                QuantityError::check(stiffening.factor, |factor| factor == 1.0, quantity, "1")?;
-                Ok(())
-            }
-            _ => Ok(()),
-        }
+        let stiffening = self.material.stiffening;
+        let of_rope = stiffening.filter(|_| self.cloth.shape.is_rope());
+        let factor = of_rope.map(|of| of.factor);
+        Ok(
+            Allowed(|factor| factor == 1.0, "1")
+                .check("factor by which a rope stiffens", factor)?,
+        )
     }
 
     /// The factors of its material.
@@ -101,9 +76,19 @@ impl BuildInputs<'_> {
     /// # Errors
     /// Those of [`ClothMaterialMap::factors`].
     pub(super) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, PaintError> {
-        let of = |(map, _): (&ClothMaterialMap, Tick)| map.factors(surface);
-        self.map.map_or_else(|| Ok(MaterialFactors::default()), of)
+        let factors = self.map.map(|map| map.factors(surface));
+        factors.unwrap_or_else(|| Ok(MaterialFactors::default()))
     }
+}
+
+/// A cloth that is built, or that follows changes of its inputs.
+pub(crate) struct Building<'a, 'w> {
+    pub wanted: &'a BuildInputs<'a>,
+    pub sources: &'a Sources<'a, 'a>,
+    pub parts: &'a mut SharedParts,
+    pub particles: &'a mut Mut<'w, ClothParticles>,
+    pub built: &'a mut ClothBuilt,
+    pub state: &'a mut ClothState,
 }
 
 /// The result of building.

@@ -12,23 +12,19 @@ use super::{
     asleep::sleeps_as_it_was,
     attach::follow_targets,
     broad_phase::clear_stats,
-    build::build,
-    build_inputs::{Build, BuildInputs},
-    carry::{carry, new_from_old},
-    drag::jump,
+    build_inputs::{Build, BuildInputs, Building},
+    carry::{carry, jump, new_from_old},
     freeze::{freeze, thaw},
     notice::notice_new,
-    preparing::{NO_PINS, PrepareQuery, PrepareQueryItem, Surroundings},
+    preparing::{PrepareQuery, PrepareQueryItem, Surroundings},
     skin::{move_with_pose, place_pose, stand_in_pose},
     step::{prepare_contact, prepare_step, see_whether_it_rests},
 };
 use crate::{
-    cloth::{ClothError, ClothParticles, MeshError},
+    cloth::{ClothError, ClothParticles},
     plugin::{
-        authoring::{
-            ClothAttachments, ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod,
-        },
-        frame::{ClothFrame, global_transform},
+        authoring::{ClothGravity, ClothLod, ClothLodLevel, ClothTeleport, GlobalClothLod},
+        frame::ClothFrame,
         naming::Part,
         state::{ClothFault, GameForces, Inputs, LodAction, Notices, SharedParts},
     },
@@ -47,7 +43,7 @@ pub(crate) fn prepare_cloths(
     for entity in &around.teleports {
         commands.entity(entity).try_remove::<ClothTeleport>();
     }
-    parts.begin_tick();
+    parts.builds.begin_tick();
     let global_lod = global_lod.as_ref().map(|global| &global.0);
     for mut cloth in &mut cloths {
         let level = cloth.state.lod.level;
@@ -89,11 +85,6 @@ pub(crate) fn prepare_cloths(
         if cloth.game.teleport.is_some() && outcome.is_ok() {
             commands.entity(cloth.entity).try_remove::<ClothTeleport>();
         }
-        // An asset that is being loaded is no fault.
-        let outcome = match outcome {
-            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
-            outcome => outcome,
-        };
         ClothFault::report(
             &mut commands,
             cloth.entity,
@@ -119,26 +110,11 @@ fn stand_still(cloth: &mut PrepareQueryItem, around: &Surroundings) -> Result<()
         check_particles(&mut cloth.particles)?;
     }
     cloth.contacts.clear();
-    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
-    let targets = &around.targets;
-    let attachments = cloth
-        .game
-        .attachments
-        .map_or(&[][..], ClothAttachments::as_slice);
-    freeze(
-        cloth.entity,
-        attachments,
-        targets,
-        &mut cloth.frame,
-        particles,
-        state,
-    )?;
-    if cloth.built.skin.is_some() && state.lod.level != ClothLodLevel::Off {
-        let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
-        let place = |joint| global_transform(&targets.transforms, joint);
-        (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
-        let (sources, frame) = (&around.sources, &*cloth.frame);
-        stand_in_pose(sources, frame, particles, built, state, scratch)?;
+    freeze(cloth, &around.targets)?;
+    if cloth.built.skin.is_some() && cloth.state.lod.level != ClothLodLevel::Off {
+        let place = |joint| around.targets.place(joint);
+        (around.skins).read(cloth.entity, place, &mut cloth.scratch.pose.joints)?;
+        stand_in_pose(cloth, &around.sources)?;
     }
     Ok(())
 }
@@ -201,41 +177,42 @@ fn build_cloth(
     let (targets, sources) = (&around.targets, &around.sources);
     let transform = targets.cloths.of(cloth.entity)?;
     let (frame, mut scale) = ClothFrame::of(&transform)?;
-    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
-    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
     if cloth.game.skin.is_some() {
-        let place = |joint| global_transform(&targets.transforms, joint);
-        (around.skins).read(cloth.entity, place, &mut scratch.pose.joints)?;
+        let place = |joint| targets.place(joint);
+        let pose = &mut cloth.scratch.pose;
+        (around.skins).read(cloth.entity, place, &mut pose.joints)?;
         // How large it is in the world is the skeleton's matter.
-        scale = scratch.pose.scale().unwrap_or(scale);
+        scale = pose.scale().unwrap_or(scale);
     }
     let wanted = BuildInputs {
         cloth: &cloth.game.cloth,
-        changed: cloth.game.cloth.last_changed(),
-        source: sources.find(cloth.entity, &cloth.game.cloth, built.source())?,
+        changes: cloth.game.changes(),
+        source: sources.find(cloth.entity, &cloth.game.cloth, cloth.built.source())?,
         material: &inputs.material,
         grain: cloth.game.grain(),
-        map: (cloth.game.map.as_ref()).map(|map| (&**map, map.last_changed())),
+        map: cloth.game.map.as_deref(),
         tears: cloth.game.tears(),
-        pins: cloth.game.pins.unwrap_or(&NO_PINS),
-        attachments: cloth
-            .game
-            .attachments
-            .map_or(&[][..], ClothAttachments::as_slice),
+        pins: cloth.game.pins(),
+        attachments: cloth.game.attachments(),
         scale,
         has_layers: (inputs.self_collision.as_ref()).is_some_and(|of| of.with_itself),
         is_async: around.async_builds.contains(cloth.entity),
     };
-    let is_new = built.from.is_some() || particles.is_empty();
-    let build = build(&wanted, sources, parts, particles, built, state)?;
+    let is_new = cloth.built.from.is_some() || cloth.particles.is_empty();
+    let mut building = Building {
+        wanted: &wanted,
+        sources,
+        parts,
+        particles: &mut cloth.particles,
+        built: &mut cloth.built,
+        state: &mut cloth.state,
+    };
+    let build = building.build()?;
     if build == Build::New {
         *cloth.frame = frame;
     }
     let begins = build == Build::New && is_new;
-    let skin = cloth.game.skin.as_ref();
-    place_pose(
-        skin, sources, &frame, begins, particles, built, state, scratch,
-    )?;
+    place_pose(cloth, sources, &frame, begins)?;
     Ok((frame, build))
 }
 
@@ -245,15 +222,14 @@ fn take_over(
     cloth: &mut PrepareQueryItem,
     inputs: &Inputs,
     around: &Surroundings,
-    [before, frame]: [&ClothFrame; 2],
+    frames: [&ClothFrame; 2],
     seconds: f32,
 ) -> Result<bool, ClothError> {
-    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     // A cloth with a fault may have been moved anywhere meanwhile.
     let jumps =
-        cloth.game.teleport.is_some() || around.roots.jumps(cloth.entity) || !state.is_valid;
-    let seconds = (seconds, jumps);
-    let has_stood = thaw(&around.targets, *frame, seconds, *before, particles, state);
+        cloth.game.teleport.is_some() || around.roots.jumps(cloth.entity) || !cloth.state.is_valid;
+    let has_stood = thaw(cloth, &around.targets, frames, (seconds, jumps));
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     // Saving or restoring particles may mark them as changed without a change.
     let was_written = has_stood
         || state.inputs.written != Some(particles.last_changed())
@@ -279,17 +255,12 @@ fn apply_motion(
     has_stood: bool,
 ) -> Result<(), ClothError> {
     let Surroundings { targets, roots, .. } = around;
-    let attachments = cloth
-        .game
-        .attachments
-        .map_or(&[][..], ClothAttachments::as_slice);
-    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
-    let (built, scratch) = (&mut *cloth.built, &mut *cloth.scratch);
+    let (state, scratch) = (&mut *cloth.state, &mut *cloth.scratch);
     targets.find(
         cloth.entity,
-        attachments,
+        cloth.game.attachments(),
         &state.attachments.given,
-        built.surface(),
+        cloth.built.surface(),
         &mut state.attachments.targets,
         &mut scratch.targets,
     )?;
@@ -317,22 +288,14 @@ fn apply_motion(
         scratch.carried = None;
         *cloth.frame = *frame;
     } else if moves && is_moved {
-        carry(particles, new_from_old, &mut scratch.pins);
+        carry(&mut cloth.particles, new_from_old, &mut scratch.pins);
         state.wake();
         *cloth.frame = *frame;
     }
     if moves || build != Build::Kept || scratch.teleports {
-        move_with_pose(new_from_old, goes_on, particles, built, state, scratch);
-        follow_targets(
-            attachments,
-            &scratch.targets,
-            *cloth.frame,
-            scratch.teleports.then_some(*before),
-            particles,
-            built,
-            state,
-            &mut scratch.pins,
-        );
+        let teleport_from = scratch.teleports.then_some(*before);
+        move_with_pose(cloth, new_from_old, goes_on);
+        follow_targets(cloth, teleport_from);
     }
     Ok(())
 }

@@ -4,131 +4,126 @@ use std::sync::Arc;
 
 use bevy::ecs::change_detection::{DetectChangesMut, Mut};
 
-use super::{
-    build_inputs::{Build, BuildInputs},
-    source::Sources,
-};
+use super::build_inputs::{Build, BuildInputs, Building};
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothParticles, ParticleError, Surface},
-    plugin::state::{ClothBuilt, ClothState, Recipe, Shared, SharedParts, Stiffnesses},
+    plugin::state::{Recipe, Shared, Stiffnesses},
 };
 
-/// Takes over another grain, or none: springs and bending follow other directions, the particles stay as they are.
-pub(super) fn follow_grain(
-    wanted: &BuildInputs,
-    sources: &Sources,
-    parts: &mut SharedParts,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<Build, ClothError> {
-    wanted.check_material()?;
-    wanted.pins.validate(built.surface())?;
-    let Some(known) = &built.shared.recipe else {
-        return Ok(Build::Kept);
-    };
-    let recipe = Recipe {
-        grain: wanted.grain.map(|(grain, _)| grain.clone()),
-        ..known.clone()
-    };
-    let of = |surface: &Surface| Ok(wanted.factors(surface)?.stiffness);
-    let shared = parts.get(&recipe, wanted.material, None, of, || {
-        recipe.surface(&sources.mesh(&recipe)?)
-    })?;
-    // A change that fails leaves the springs as they are.
-    follow_masses(wanted, particles, built, state)?;
-    take_springs(built, shared, state);
-    if let Some(from) = &mut built.from {
-        from.grained = wanted.grained();
-    }
-    Ok(Build::Kept)
-}
-
-/// Takes over the springs of the same particles.
-fn take_springs(built: &mut ClothBuilt, shared: Arc<Shared>, state: &mut ClothState) {
-    built.shared = shared;
-    let mut solver = built.shared.new_solver();
-    solver.take_tethers_of(&mut built.solver);
-    built.solver = solver;
-    // The stretch that bounds rely on is measured over other springs now.
-    state.inputs.written = None;
-}
-
-/// Takes over another material, map of it, or other pins, and springs, if these change.
-pub(super) fn follow_changes(
-    wanted: &BuildInputs,
-    parts: &mut SharedParts,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<(), ClothError> {
-    if follow_masses(wanted, particles, built, state)?
-        && let Some(from) = &built.from
-    {
-        let factors = &from.factors.stiffness;
-        let shared = parts.with_material(&built.shared, wanted.material, factors);
-        take_springs(built, shared, state);
-    }
-    Ok(())
-}
-
-/// Takes over another material, map of it, or other pins: masses only where they change, so that a mass that the game has set
-/// outlasts a change of damping. Returns whether the springs are others.
-pub(super) fn follow_masses(
-    wanted: &BuildInputs,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<bool, ClothError> {
-    let BuildInputs { material, pins, .. } = *wanted;
-    check_count(particles, built.surface())?;
-    let Some(from) = &mut built.from else {
-        return Ok(false);
-    };
-    let is_mapped_otherwise = from.mapped != wanted.mapped();
-    let are_others_pinned = from.pins != *pins;
-    if from.material == *material && !are_others_pinned && !is_mapped_otherwise {
-        return Ok(false);
-    }
-    wanted.check_material()?;
-    let surface = &built.shared.surface;
-    pins.validate(surface)?;
-    let factors = match is_mapped_otherwise {
-        true => wanted.factors(surface)?,
-        false => from.factors.clone(),
-    };
-    from.mapped = wanted.mapped();
-    if from.material == *material && !are_others_pinned && from.factors == factors {
-        // Written, and not changed.
-        return Ok(false);
-    }
-    factors.density.check(surface, material)?;
-    if from.factors.density != factors.density {
-        // Their motion goes on: nothing that rests on where they are has to be looked at again.
-        let particles = particles.bypass_change_detection();
-        particles.weigh(surface, material, &factors.density)?;
-        built.masses = particles.free_masses();
-    }
-    if from.material.areal_density != material.areal_density || are_others_pinned {
-        particles.assign_masses(surface, material, &factors.density, pins)?;
-        // They are pinned again with the offsets that they have.
-        for attached in &state.attachments.attached {
-            particles.pin(attached.particle as usize);
+impl Building<'_, '_> {
+    /// Takes over another grain, or none: springs and bending follow other directions, the particles stay as they are.
+    pub(super) fn follow_grain(&mut self) -> Result<Build, ClothError> {
+        let Self {
+            wanted, sources, ..
+        } = *self;
+        wanted.check_material()?;
+        wanted.pins.validate(self.built.surface())?;
+        let Some(known) = &self.built.shared.recipe else {
+            return Ok(Build::Kept);
+        };
+        let recipe = Recipe {
+            grain: wanted.grain.cloned(),
+            ..known.clone()
+        };
+        let of = |surface: &Surface| Ok(wanted.factors(surface)?.stiffness);
+        let shared = self.parts.get(&recipe, wanted.material, None, of, || {
+            recipe.surface(&sources.mesh(&recipe)?)
+        })?;
+        // A change that fails leaves the springs as they are.
+        self.follow_masses()?;
+        self.take_springs(shared);
+        if let Some(from) = &mut self.built.from {
+            from.changes.grain = wanted.changes.grain;
         }
+        Ok(Build::Kept)
     }
-    let tethered_by = |of: &ClothMaterial| {
-        let compliances = (of.stretch_compliances(), of.shear_compliance);
-        (of.areal_density, compliances, of.stiffening)
-    };
-    let is_as_stiff = from.factors.stiffness == factors.stiffness;
-    let gives_otherwise = tethered_by(&from.material) != tethered_by(material);
-    let is_sprung_otherwise = !is_as_stiff || !Stiffnesses::are_alike(&from.material, material);
-    (from.material, from.pins, from.factors) = (*material, pins.clone(), factors);
-    if are_others_pinned || gives_otherwise || !is_as_stiff {
-        built.forget_tethers();
+
+    /// Takes over the springs of the same particles.
+    fn take_springs(&mut self, shared: Arc<Shared>) {
+        let mut solver = shared.new_solver();
+        self.built.shared = shared;
+        solver.take_tethers_of(&mut self.built.solver);
+        self.built.solver = solver;
+        // The stretch that bounds rely on is measured over other springs now.
+        self.state.inputs.written = None;
     }
-    state.wake();
-    Ok(is_sprung_otherwise)
+
+    /// Takes over another material, map of it, or other pins, and springs, if these change.
+    pub(super) fn follow_changes(&mut self) -> Result<(), ClothError> {
+        if self.follow_masses()?
+            && let Some(from) = &self.built.from
+        {
+            let (shared, factors) = (&self.built.shared, &from.factors.stiffness);
+            let shared = self
+                .parts
+                .with_material(shared, self.wanted.material, factors);
+            self.take_springs(shared);
+        }
+        Ok(())
+    }
+
+    /// Takes over another material, map of it, or other pins: masses only where they change, so that a mass that the game has set
+    /// outlasts a change of damping. Returns whether the springs are others.
+    pub(super) fn follow_masses(&mut self) -> Result<bool, ClothError> {
+        let Self {
+            wanted,
+            particles,
+            built,
+            state,
+            ..
+        } = self;
+        let BuildInputs { material, pins, .. } = **wanted;
+        check_count(particles, built.surface())?;
+        let Some(from) = &mut built.from else {
+            return Ok(false);
+        };
+        let is_mapped_otherwise = from.changes.map != wanted.changes.map;
+        let are_others_pinned = from.pins != *pins;
+        if from.material == *material && !are_others_pinned && !is_mapped_otherwise {
+            return Ok(false);
+        }
+        wanted.check_material()?;
+        let surface = &built.shared.surface;
+        pins.validate(surface)?;
+        let factors = match is_mapped_otherwise {
+            true => wanted.factors(surface)?,
+            false => from.factors.clone(),
+        };
+        from.changes.map = wanted.changes.map;
+        if from.material == *material && !are_others_pinned && from.factors == factors {
+            // Written, and not changed.
+            return Ok(false);
+        }
+        factors.density.check(surface, material)?;
+        if from.factors.density != factors.density {
+            // Their motion goes on: nothing that rests on where they are has to be looked at again.
+            let particles = particles.bypass_change_detection();
+            particles.weigh(surface, material, &factors.density)?;
+            built.masses = particles.free_masses();
+        }
+        if from.material.areal_density != material.areal_density || are_others_pinned {
+            particles.assign_masses(surface, material, &factors.density, pins)?;
+            // They are pinned again with the offsets that they have.
+            for attached in &state.attachments.attached {
+                particles.pin(attached.particle as usize);
+            }
+        }
+        let tethered_by = |of: &ClothMaterial| {
+            let compliances = (of.stretch_compliances(), of.shear_compliance);
+            (of.areal_density, compliances, of.stiffening)
+        };
+        let is_as_stiff = from.factors.stiffness == factors.stiffness;
+        let stiffnesses = |of: &ClothMaterial| Stiffnesses::of(of, &factors.stiffness);
+        let gives_otherwise = tethered_by(&from.material) != tethered_by(material);
+        let is_sprung_otherwise =
+            !is_as_stiff || stiffnesses(&from.material) != stiffnesses(material);
+        (from.material, from.pins, from.factors) = (*material, pins.clone(), factors);
+        if are_others_pinned || gives_otherwise || !is_as_stiff {
+            built.forget_tethers();
+        }
+        state.wake();
+        Ok(is_sprung_otherwise)
+    }
 }
 
 /// Whether the particles are as many as the surface has. One row of them is laid out as the surface is, and a grid as its mesh.

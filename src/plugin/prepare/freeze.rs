@@ -1,19 +1,16 @@
 //! Frozen cloths, which keep their shape and move with their carrier, and the start of their motion when they thaw.
 
 use bevy::{
-    ecs::{
-        change_detection::{DetectChanges, DetectChangesMut, Mut},
-        entity::Entity,
-    },
+    ecs::change_detection::{DetectChanges, DetectChangesMut},
     math::Isometry3d,
 };
 
-use super::attach::Targets;
+use super::{named::Targets, preparing::PrepareQueryItem};
 use crate::{
-    cloth::{ClothError, ClothParticles, TargetError},
+    cloth::{ClothError, TargetError},
     plugin::{
         authoring::ClothAttachment,
-        frame::{ClothFrame, global_transform, rigid},
+        frame::{ClothFrame, rigid},
         state::{ClothState, Frozen},
     },
 };
@@ -24,7 +21,7 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
     let Some(target) = state.attachments.targets.first() else {
         return Some(frame.isometry());
     };
-    let place = global_transform(&targets.transforms, *target)?.affine();
+    let place = targets.place(*target)?.affine();
     place.inverse().is_finite().then(|| rigid(&place))
 }
 
@@ -34,15 +31,10 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
 /// # Errors
 /// [`Unusable`](crate::cloth::TransformError::Unusable), [`Missing`](crate::cloth::TransformError::Missing), and [`TargetError::NoTarget`] if the target of the first of
 /// `attachments` is gone or has no place.
-pub(crate) fn freeze(
-    entity: Entity,
-    attachments: &[ClothAttachment],
-    targets: &Targets,
-    frame: &mut Mut<ClothFrame>,
-    particles: &mut Mut<ClothParticles>,
-    state: &mut ClothState,
-) -> Result<(), ClothError> {
-    let transform = targets.cloths.of(entity)?;
+pub(crate) fn freeze(cloth: &mut PrepareQueryItem, targets: &Targets) -> Result<(), ClothError> {
+    let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
+    let attachments = cloth.game.attachments();
+    let transform = targets.cloths.of(cloth.entity)?;
     let (now, _) = ClothFrame::of(&transform)?;
     let Some(carried_by) = carrier(targets, state, now) else {
         return match (attachments.first(), state.attachments.targets.first()) {
@@ -58,7 +50,7 @@ pub(crate) fn freeze(
             _ => Ok(()),
         };
     };
-    let was = frame.isometry();
+    let was = cloth.frame.isometry();
     let frozen = state.lod.frozen.unwrap_or_else(|| {
         particles.set_body_motion(Isometry3d::IDENTITY, 0.0);
         state.inputs.written = Some(particles.last_changed());
@@ -79,29 +71,28 @@ pub(crate) fn freeze(
         last: carried_by,
         ..frozen
     });
-    frame.set_if_neq(now.with_isometry(pose));
+    cloth.frame.set_if_neq(now.with_isometry(pose));
     Ok(())
 }
 
 /// Thaws a frozen cloth, whose entity is at `now`, in a tick of `seconds`. It gets the velocity of its carrier, or none
 /// if it `jumps`. Returns whether it was frozen.
 pub(crate) fn thaw(
+    cloth: &mut PrepareQueryItem,
     targets: &Targets,
-    now: ClothFrame,
+    [before, now]: [&ClothFrame; 2],
     (seconds, jumps): (f32, bool),
-    frame: ClothFrame,
-    particles: &mut Mut<ClothParticles>,
-    state: &mut ClothState,
 ) -> bool {
+    let state = &mut *cloth.state;
     let Some(frozen) = state.lod.frozen.take() else {
         return false;
     };
-    let was = frame.isometry();
-    let by = match carrier(targets, state, now) {
+    let was = before.isometry();
+    let by = match carrier(targets, state, *now) {
         Some(now) if !jumps => was.inverse() * now * frozen.last.inverse() * was,
         _ => Isometry3d::IDENTITY,
     };
-    particles.set_body_motion(by, seconds);
+    cloth.particles.set_body_motion(by, seconds);
     // Its last place while frozen, not its place as it froze.
     if state.attachments.first_target.is_some() {
         state.attachments.first_target = Some(frozen.last);

@@ -161,7 +161,7 @@ impl GrabbedQueryItem<'_, '_> {
     fn is_built(&self) -> bool {
         let from = self.built.from.as_ref();
         self.built.matches(self.particles)
-            && from.is_some_and(|from| from.changed == self.cloth.last_changed())
+            && from.is_some_and(|from| from.changes.cloth == self.cloth.last_changed())
     }
 }
 

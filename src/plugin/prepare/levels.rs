@@ -11,16 +11,16 @@ use bevy::{
 };
 
 use super::{
-    cameras::Cameras,
     colliders::{ColliderMotion, ColliderTree},
     islands::{Islands, Span},
     seams::Seams,
+    source::Cameras,
 };
 use crate::{
     cloth::ClothParticles,
     contact::{ClothLayers, ClothSelfCollision},
     plugin::{
-        authoring::{ClothLod, ClothLodLevel, ClothOrder, ClothTeleport, GlobalClothLod, Ordered},
+        authoring::{ClothLod, ClothLodLevel, ClothOrder, ClothTeleport, GlobalClothLod},
         frame::ClothFrame,
         state::{ClothBuilt, ClothState},
     },
@@ -49,17 +49,20 @@ pub(crate) struct LodQuery {
 /// A cloth, and its wanted level.
 #[derive(Debug, Clone, Copy)]
 struct WantedLevel {
-    cloth: Ordered,
-    level: ClothLodLevel,
     /// Around the whole of it, as far as it may get until it is moved again, in the world (m).
-    centre: Vec3,
-    radius: f32,
-    layers: ClothLayers,
-    touches_cloth: bool,
+    span: Span,
+    level: ClothLodLevel,
     /// The place of the one whose level and phase all have that are near each other.
     group: usize,
     phase: u32,
     is_due: bool,
+}
+
+impl WantedLevel {
+    /// Whether it may touch other cloth, or is sewn to it.
+    fn is_joined(&self, seams: &Seams) -> bool {
+        self.span.touches || seams.hold(self.span.cloth.1)
+    }
 }
 
 /// Memory that a tick works in.
@@ -95,22 +98,23 @@ pub(crate) fn choose_levels(
     for mut cloth in &mut cloths {
         let mut own = cloth.wanted(global, &cameras);
         if let ClothLodLevel::Every(_) = own.level {
-            let comes_near = tree
-                .near(own.centre, own.radius)
-                .filter_map(|entity| colliders.get(entity).ok())
-                .any(|(motion, layers)| {
-                    layers
-                        .copied()
-                        .unwrap_or_default()
-                        .interacts_with(own.layers)
-                        && (motion.is_moving() || motion.is_body())
-                        && motion.comes_near(own.centre, own.radius)
-                });
+            let Span {
+                centre,
+                radius,
+                layers,
+                ..
+            } = own.span;
+            let near = tree.near(centre, radius);
+            let mut near = near.filter_map(|entity| colliders.get(entity).ok());
+            let comes_near = near.any(|(motion, others)| {
+                layers.interacts_with(others.copied().unwrap_or_default())
+                    && (motion.is_moving() || motion.is_body())
+                    && motion.comes_near(centre, radius)
+            });
             let kept = &mut cloth.state.lod.kept;
-            *kept = if comes_near {
-                KEPT
-            } else {
-                kept.saturating_sub(1)
+            *kept = match comes_near {
+                true => KEPT,
+                false => kept.saturating_sub(1),
             };
             if *kept > 0 {
                 own.level = ClothLodLevel::Full;
@@ -118,20 +122,18 @@ pub(crate) fn choose_levels(
         }
         wanted.push(own);
     }
-    wanted.sort_unstable_by_key(|own| own.cloth);
+    wanted.sort_unstable_by_key(|own| own.span.cloth);
     for (place, own) in wanted.iter_mut().enumerate() {
         (own.group, own.phase) = (place, place as u32);
     }
-    let is_coarse = |own: &WantedLevel| {
-        (own.touches_cloth || seams.hold(own.cloth.1)) && own.level != ClothLodLevel::Full
-    };
+    let is_coarse = |own: &WantedLevel| own.level != ClothLodLevel::Full && own.is_joined(&seams);
     if wanted.iter().any(is_coarse) {
         group(wanted, groups, &seams);
     }
     for place in 0..wanted.len() {
         let own = wanted[place];
         let of_group = wanted[own.group];
-        let Ok(mut cloth) = cloths.get_mut(own.cloth.1) else {
+        let Ok(mut cloth) = cloths.get_mut(own.span.cloth.1) else {
             continue;
         };
         // Sleeping cloth costs next to nothing.
@@ -158,12 +160,15 @@ impl LodQueryItem<'_, '_> {
         let layers = self.layers.copied().unwrap_or_default();
         let order = self.order.copied().unwrap_or_default();
         let mut wanted = WantedLevel {
-            cloth: (order, self.entity),
+            span: Span {
+                cloth: (order, self.entity),
+                centre: Vec3::ZERO,
+                radius: 0.0,
+                layers,
+                touches: false,
+                bounds: None,
+            },
             level: ClothLodLevel::Full,
-            centre: Vec3::ZERO,
-            radius: 0.0,
-            layers,
-            touches_cloth: false,
             group: 0,
             phase: 0,
             is_due: true,
@@ -174,17 +179,15 @@ impl LodQueryItem<'_, '_> {
         let Some((centre, radius)) = self.sphere() else {
             return wanted;
         };
-        wanted.centre = self.frame.to_world(centre);
+        wanted.span.centre = self.frame.to_world(centre);
         let state = &mut self.state.lod;
         if let Some(lod) = lod {
-            let nearest = cameras.nearest(wanted.centre);
+            let nearest = cameras.nearest(wanted.span.centre);
             let is_hidden = nearest.is_some() && cameras.is_hidden(self.entity);
             let distance = nearest.map_or(0.0, |distance| (distance - radius).max(0.0));
             state.passed = lod.passed(distance, state.passed);
-            let by_distance = state
-                .passed
-                .checked_sub(1)
-                .map(|last| lod.distances[last].1);
+            let last = state.passed.checked_sub(1);
+            let by_distance = last.map(|last| lod.distances[last].1);
             wanted.level = lod.level.or(by_distance).unwrap_or_default();
             if is_hidden && lod.hidden.coarseness() > wanted.level.coarseness() {
                 wanted.level = lod.hidden;
@@ -196,8 +199,8 @@ impl LodQueryItem<'_, '_> {
         let around = self.settings.copied().unwrap_or_default().particle_radius;
         let around = self.built.surface().rope_radius().unwrap_or(around);
         let thickness = self.self_collision.map_or(0.0, |of| of.thickness);
-        wanted.radius = radius + 2.0 * state.reach * times * times + around.max(thickness);
-        wanted.touches_cloth = self.self_collision.is_some();
+        wanted.span.radius = radius + 2.0 * state.reach * times * times + around.max(thickness);
+        wanted.span.touches = self.self_collision.is_some();
         wanted.is_due = self.teleports || self.state.lod.is_due();
         wanted
     }
@@ -205,20 +208,12 @@ impl LodQueryItem<'_, '_> {
 
 /// Gives cloths that may touch each other, or are sewn together, the finest of their levels, and moves them in the same ticks.
 fn group(wanted: &mut [WantedLevel], groups: &mut Islands, seams: &Seams) {
-    let is_joined = |own: &&WantedLevel| own.touches_cloth || seams.hold(own.cloth.1);
-    let spans = wanted.iter().filter(is_joined);
-    groups.begin(spans.map(|own| Span {
-        cloth: own.cloth,
-        centre: own.centre,
-        radius: own.radius,
-        layers: own.layers,
-        touches: own.touches_cloth,
-        bounds: None,
-    }));
+    let joined = wanted.iter().filter(|own| own.is_joined(seams));
+    groups.begin(joined.map(|own| own.span));
     groups.join(|_| None);
     groups.sew(seams);
     let place_of =
-        |wanted: &[WantedLevel], cloth| wanted.binary_search_by_key(&cloth, |own| own.cloth);
+        |wanted: &[WantedLevel], cloth| wanted.binary_search_by_key(&cloth, |own| own.span.cloth);
     for (cloth, root) in groups.roots() {
         let (Ok(place), Ok(root)) = (place_of(wanted, cloth), place_of(wanted, root)) else {
             continue;

@@ -9,12 +9,9 @@ mod attach;
 mod broad_phase;
 mod build;
 mod build_inputs;
-mod cameras;
 mod carry;
 mod cloths;
 mod colliders;
-mod cost;
-mod drag;
 mod follow;
 mod freeze;
 mod grabs;
@@ -34,12 +31,12 @@ mod tears;
 mod wind;
 
 pub(crate) use broad_phase::cover;
+pub(crate) use carry::FAR;
 pub(crate) use cloths::prepare_cloths;
 pub(crate) use colliders::{
     ChangedColliders, ColliderMemory, ColliderMotion, ColliderTree, forget_collider, note_enabled,
     note_removals, prepare_colliders,
 };
-pub(crate) use drag::FAR;
 pub(crate) use grabs::{hold_cloths, let_go};
 pub(crate) use islands::{Island, Islands, find_islands};
 pub(crate) use levels::choose_levels;
@@ -47,6 +44,6 @@ pub(crate) use roots::{Teleporting, follow_roots};
 pub(crate) use seams::{Seams, forget_stitches, prepare_seams};
 pub(crate) use source::Skins;
 #[cfg(feature = "mesh")]
-pub(crate) use source::{ChangedMeshes, SharedMeshes, note_changed_meshes};
+pub(crate) use source::{ChangedMeshes, SharedMeshes, not_there, note_changed_meshes};
 pub(crate) use tears::build_torn_ahead;
 pub(crate) use wind::prepare_wind;

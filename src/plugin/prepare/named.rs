@@ -2,16 +2,26 @@
 
 use std::iter;
 
-use bevy::ecs::{
-    entity::Entity,
-    entity_disabling::Disabled,
-    hierarchy::ChildOf,
-    name::Name,
-    query::{Allow, QueryFilter},
-    system::{Query, SystemParam},
+use bevy::{
+    ecs::{
+        entity::Entity,
+        entity_disabling::Disabled,
+        hierarchy::ChildOf,
+        name::Name,
+        query::{Allow, QueryFilter},
+        system::{Query, SystemParam},
+    },
+    math::Affine3A,
+    transform::{components::GlobalTransform, helper::TransformHelper},
 };
 
-use crate::{cloth::TargetError, plugin::authoring::ClothTarget};
+use crate::{
+    cloth::{ClothError, Surface, TargetError},
+    plugin::{
+        authoring::{ClothAttachment, ClothTarget},
+        frame::Places,
+    },
+};
 
 /// Names of the entities that pass `F`, and the hierarchy.
 #[derive(SystemParam)]
@@ -65,5 +75,60 @@ impl<F: QueryFilter + Send + Sync + 'static> NamedTargets<'_, '_, F> {
     fn steps_up(&self, from: Entity, to: Entity) -> Option<usize> {
         let line = |of: Entity| iter::once(of).chain(self.parents.iter_ancestors(of));
         line(from).position(|above| line(to).any(|of| of == above))
+    }
+}
+
+/// Transforms and names of entities.
+#[derive(SystemParam)]
+pub(crate) struct Targets<'w, 's> {
+    transforms: TransformHelper<'w, 's>,
+    /// Where cloths are, also below what is disabled.
+    pub cloths: Places<'w, 's>,
+    named: NamedTargets<'w, 's, ()>,
+}
+
+impl Targets<'_, '_> {
+    /// An entity's global transform as of now, not as of the last frame, if it and all above it have one.
+    pub fn place(&self, entity: Entity) -> Option<GlobalTransform> {
+        self.transforms.compute_global_transform(entity).ok()
+    }
+
+    /// Finds the places of the targets of a cloth's attachments; `known` are the attachments of the last tick.
+    ///
+    /// # Errors
+    /// [`TargetError::NoTarget`] for a target that does not exist, has no transform, or is scaled to zero;
+    /// [`TargetError::NoTargetNamed`]; or the error of a pin.
+    pub fn find(
+        &self,
+        cloth: Entity,
+        attachments: &[ClothAttachment],
+        known: &[ClothAttachment],
+        surface: &Surface,
+        entities: &mut Vec<Entity>,
+        places: &mut Vec<Affine3A>,
+    ) -> Result<(), ClothError> {
+        places.clear();
+        // Known attachments were valid.
+        if attachments != known {
+            attachments
+                .iter()
+                .try_for_each(|each| each.pin.validate(surface))?;
+        }
+        for (index, attachment) in attachments.iter().enumerate() {
+            let known = entities.get(index).copied();
+            let exists = |entity| self.place(entity).is_some();
+            let pin = || format!("{:?}", attachment.pin);
+            let target = (self.named).find(&attachment.target, cloth, known, exists, pin)?;
+            let affine = self.place(target).map(|place| place.affine());
+            let place = affine.filter(|affine| affine.inverse().is_finite());
+            places.push(place.ok_or_else(|| TargetError::NoTarget { pin: pin(), target })?);
+            if index < entities.len() {
+                entities[index] = target;
+            } else {
+                entities.push(target);
+            }
+        }
+        entities.truncate(attachments.len());
+        Ok(())
     }
 }

@@ -30,11 +30,6 @@ pub(crate) struct Neighbour {
 }
 
 impl NeighbourItem<'_, '_> {
-    /// Whether it sleeps.
-    pub fn is_asleep(&self) -> bool {
-        self.state.rest.is_asleep()
-    }
-
     /// Wakes a cloth that was prepared as a sleeping one.
     pub fn wake(&mut self) {
         self.state.rest.disturb();

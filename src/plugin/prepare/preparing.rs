@@ -7,12 +7,12 @@ use bevy::ecs::{
 };
 
 use super::{
-    attach::Targets,
+    named::Targets,
     roots::Roots,
     source::{Skins, Sources},
 };
 use crate::{
-    cloth::{Cloth, ClothParticles, Pins},
+    cloth::{Cloth, ClothParticles},
     plugin::{
         authoring::{ClothAsyncBuild, ClothTeleport},
         frame::ClothFrame,
@@ -22,9 +22,6 @@ use crate::{
         },
     },
 };
-
-/// The pins of a cloth from which the game took its [`Pins`].
-pub(super) static NO_PINS: Pins = Pins::none();
 
 /// A cloth that is prepared for a tick.
 #[derive(QueryData)]

@@ -14,7 +14,10 @@ use bevy::{
     math::Vec3,
 };
 
-use super::{named::NamedTargets, neighbour::Neighbour};
+use super::{
+    named::NamedTargets,
+    neighbour::{Neighbour, NeighbourReadOnlyItem},
+};
 use crate::{
     cloth::{Cloth, ClothError, SewnSide, Surface, TargetError, stitches},
     plugin::{
@@ -112,7 +115,7 @@ pub(crate) fn forget_stitches(
 fn wake(of: [Entity; 2], cloths: &mut Query<Neighbour>) {
     for cloth in of {
         if let Ok(mut cloth) = cloths.get_mut(cloth)
-            && cloth.is_asleep()
+            && cloth.state.rest.is_asleep()
         {
             cloth.wake();
         }
@@ -140,29 +143,32 @@ impl SeamQueryItem<'_, '_> {
         self.seam.validate()?;
         let of = self.cloths(names)?;
         let is_known = self.stitches.known.as_ref() == Some(self.seam);
-        let mut surfaces: [Option<Arc<Surface>>; 2] = [None, None];
-        let mut orders = of.map(|cloth| (Default::default(), cloth));
-        let mut is_ready = true;
-        for (place, cloth) in of.into_iter().enumerate() {
-            let Ok(item) = cloths.get(cloth) else {
-                return Err(TargetError::NoSuchCloth { cloth }.into());
-            };
-            orders[place].0 = item.order.copied().unwrap_or_default();
-            is_ready &= item.scratch.step.is_some() && item.built.matches(item.particles);
-            surfaces[place] = Some(item.built.surface().clone());
-        }
-        let (true, [Some(a), Some(b)]) = (is_ready, surfaces) else {
+        let get = |cloth| {
+            cloths
+                .get(cloth)
+                .map_err(|_| TargetError::NoSuchCloth { cloth })
+        };
+        let joined = [get(of[0])?, get(of[1])?];
+        let order = |of: &NeighbourReadOnlyItem| (of.order.copied().unwrap_or_default(), of.entity);
+        let orders = joined.each_ref().map(order);
+        let is_ready = |of: &NeighbourReadOnlyItem| {
+            of.scratch.step.is_some() && of.built.matches(of.particles)
+        };
+        if !joined.iter().all(is_ready) {
             let has_begun = self.stitches.cloths == Some(of);
             return Ok(has_begun.then(|| self.active(orders)).flatten());
-        };
-        let surfaces = [a, b];
-        let wakes = !self.is_of(of, &surfaces) && self.begin(of, &surfaces, cloths)?;
+        }
+        let surfaces = joined.each_ref().map(|of| of.built.surface().clone());
+        let begins = !self.is_of(of, &surfaces);
+        if begins {
+            self.begin(of, &surfaces, joined)?;
+        }
         self.stitches.surfaces = Some(surfaces);
         if !is_known {
             self.stitches.known = Some(self.seam.clone());
         }
         let stitches = &self.stitches.seam;
-        if wakes || !is_known || stitches.is_closing(&self.seam.pull()) {
+        if begins || !is_known || stitches.is_closing(&self.seam.pull()) {
             wake(of, cloths);
         }
         Ok(self.active(orders))
@@ -188,49 +194,40 @@ impl SeamQueryItem<'_, '_> {
                 stitches.seam.is_of(counts)
             }
         };
-        is_same
-            && stitches.cloths == Some(cloths)
-            && (stitches.known.as_ref()).is_some_and(|known| known.sides() == self.seam.sides())
+        is_same && self.joins(cloths)
     }
 
-    /// Begins anew, from where the particles are. Returns whether it has.
+    /// Whether its stitches are those of the same sides of the same cloths.
+    fn joins(&self, cloths: [Entity; 2]) -> bool {
+        let known = self.stitches.known.as_ref();
+        self.stitches.cloths == Some(cloths)
+            && known.is_some_and(|known| known.sides() == self.seam.sides())
+    }
+
+    /// Begins anew, from where the particles are.
     fn begin(
         &mut self,
         of: [Entity; 2],
         surfaces: &[Arc<Surface>; 2],
-        cloths: &Query<Neighbour>,
-    ) -> Result<bool, ClothError> {
+        [a, b]: [NeighbourReadOnlyItem; 2],
+    ) -> Result<(), ClothError> {
         let [first, second] = self.seam.sides();
         let first = SewnSide::of(&surfaces[0], &first.along)?;
         let second = SewnSide::of(&surfaces[1], &second.along)?;
-        let [Ok(a), Ok(b)] = of.map(|cloth| cloths.get(cloth)) else {
-            return Ok(false);
-        };
         let from_second = relative(a.frame.isometry(), b.frame.isometry());
-        let places: [Vec<Vec3>; 2] = [
-            a.particles.positions().collect(),
-            b.particles
-                .positions()
-                .map(|place| from_second * place)
-                .collect(),
-        ];
-        let [own, others] = &places;
-        let places = [&own[..], &others[..]];
-        let spacing = surfaces[0]
-            .spacing()
-            .typical
-            .min(surfaces[1].spacing().typical);
+        let own: Vec<Vec3> = a.particles.positions().collect();
+        let others = b.particles.positions().map(|place| from_second * place);
+        let places = [&own[..], &others.collect::<Vec<_>>()];
+        let [spacing, other] = surfaces.each_ref().map(|surface| surface.spacing().typical);
+        let spacing = spacing.min(other);
         let all = stitches([&first, &second], places, spacing);
         let mut new = Seam::new(&all, places, of[0] == of[1]);
-        let stitches = &mut *self.stitches;
-        let goes_on = stitches.cloths == Some(of)
-            && (stitches.known.as_ref()).is_some_and(|known| known.sides() == self.seam.sides());
-        if goes_on {
+        if self.joins(of) {
             // Another resolution of the same cloths.
-            new.resume(&stitches.seam);
+            new.resume(&self.stitches.seam);
         }
-        stitches.seam = new;
-        stitches.cloths = Some(of);
-        Ok(true)
+        self.stitches.seam = new;
+        self.stitches.cloths = Some(of);
+        Ok(())
     }
 }

@@ -3,55 +3,50 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::change_detection::{DetectChanges, Mut, Ref},
+    ecs::change_detection::{DetectChanges, Mut},
     math::{Isometry3d, Quat, Vec3},
 };
 
+use super::{carry::set_motion, preparing::PrepareQueryItem, source::Sources};
 use crate::{
-    cloth::{ClothError, ClothParticles, ClothSkin},
+    cloth::{ClothError, ClothParticles},
     plugin::{
         frame::ClothFrame,
-        prepare::{carry::set_motion, source::Sources},
-        state::{ClothBuilt, ClothScratch, ClothState, Pose, SkinLimits},
+        state::{ClothScratch, Pose, SkinLimits},
     },
-    solver::{MotionConstraints, PinMotion},
+    solver::PinMotion,
 };
 
-/// Takes over a [`ClothSkin`], and places the pose from the joints that have been read into `scratch`. A new cloth is
+/// Takes over a `ClothSkin`, and places the pose from the joints that have been read into `scratch`. A new cloth is
 /// put into the pose.
 ///
 /// # Errors
 /// The error of the component, or of the mesh's joints.
 pub(crate) fn place_pose(
-    skin: Option<&Ref<ClothSkin>>,
+    cloth: &mut PrepareQueryItem,
     sources: &Sources,
     frame: &ClothFrame,
     begins: bool,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-    scratch: &mut ClothScratch,
 ) -> Result<(), ClothError> {
-    renew_limits(skin, particles, built, state)?;
-    place_joints(sources, frame, built, scratch)?;
-    if begins && built.skin.is_some() {
-        begin_in_pose(&scratch.pose, particles, built);
+    renew_limits(cloth)?;
+    place_joints(cloth, sources, frame)?;
+    if begins && cloth.built.skin.is_some() {
+        begin_in_pose(cloth);
     }
     Ok(())
 }
 
 /// Places the pose from the joints that have been read into `scratch`, if the cloth follows one.
 fn place_joints(
+    cloth: &mut PrepareQueryItem,
     sources: &Sources,
     frame: &ClothFrame,
-    built: &mut ClothBuilt,
-    scratch: &mut ClothScratch,
 ) -> Result<(), ClothError> {
+    let (built, pose) = (&*cloth.built, &mut cloth.scratch.pose);
     let Some(limits) = &built.skin else {
         return Ok(());
     };
     let with_normals = !limits.backstops.is_empty();
-    let pose = &mut scratch.pose;
     let skinning = match pose.joints.is_empty() {
         true => None,
         false => (built.shared).skinning(|source, surface| sources.skinning(source, surface))?,
@@ -65,37 +60,32 @@ fn place_joints(
 /// # Errors
 /// The error of the mesh's joints.
 pub(crate) fn stand_in_pose(
+    cloth: &mut PrepareQueryItem,
     sources: &Sources,
-    frame: &ClothFrame,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-    scratch: &mut ClothScratch,
 ) -> Result<(), ClothError> {
-    let is_new = scratch.pose.joints != state.pose.joints || state.pose.frame != *frame;
-    if state.pose.places.is_empty() || !is_new {
+    let (frame, known) = (*cloth.frame, &cloth.state.pose);
+    let is_new = cloth.scratch.pose.joints != known.joints || known.frame != frame;
+    if known.places.is_empty() || !is_new {
         return Ok(());
     }
-    place_joints(sources, frame, built, scratch)?;
-    std::mem::swap(&mut scratch.pose, &mut state.pose);
-    if let Some(turn) = state.pose.turn_since(&scratch.pose) {
-        teleport_to_pose([&scratch.pose, &state.pose], turn, particles);
-        state.inputs.written = Some(particles.last_changed());
+    place_joints(cloth, sources, &frame)?;
+    let (from, state) = (&mut cloth.scratch.pose, &mut *cloth.state);
+    std::mem::swap(from, &mut state.pose);
+    if let Some(turn) = state.pose.turn_since(from) {
+        teleport_to_pose([from, &state.pose], turn, &mut cloth.particles);
+        state.inputs.written = Some(cloth.particles.last_changed());
     }
     Ok(())
 }
 
-/// Takes over a [`ClothSkin`] that is new, has changed, or was removed. Particles that it no longer holds get their
+/// Takes over a `ClothSkin` that is new, has changed, or was removed. Particles that it no longer holds get their
 /// mass back.
 ///
 /// # Errors
 /// The error of the component; nothing is changed then.
-fn renew_limits(
-    skin: Option<&Ref<ClothSkin>>,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<(), ClothError> {
+fn renew_limits(cloth: &mut PrepareQueryItem) -> Result<(), ClothError> {
+    let (skin, particles) = (cloth.game.skin.as_ref(), &mut cloth.particles);
+    let (built, state) = (&mut *cloth.built, &mut *cloth.state);
     let surface = built.surface();
     let known = built.skin.as_ref();
     let is_known = match (skin, known) {
@@ -136,11 +126,12 @@ fn renew_limits(
 }
 
 /// Puts the particles of a new cloth, which are at rest, into its pose.
-fn begin_in_pose(pose: &Pose, particles: &mut Mut<ClothParticles>, built: &ClothBuilt) {
+fn begin_in_pose(cloth: &mut PrepareQueryItem) {
+    let (pose, particles) = (&cloth.scratch.pose, &mut cloth.particles);
     if pose.joints.is_empty() {
         return;
     }
-    let rest = built.surface().rest_positions();
+    let rest = cloth.built.surface().rest_positions();
     for (index, (place, rest)) in pose.places.iter().zip(rest).enumerate() {
         // They begin a little beside the surface.
         let beside = particles.position_at(index) - *rest;
@@ -151,16 +142,14 @@ fn begin_in_pose(pose: &Pose, particles: &mut Mut<ClothParticles>, built: &Cloth
 /// Takes over a pose that has been placed in `scratch`, as a tick begins in which the cloth's frame changes by
 /// `new_from_old`. That is `None` if the cloth is new or teleports.
 pub(crate) fn move_with_pose(
+    cloth: &mut PrepareQueryItem,
     new_from_old: Isometry3d,
     goes_on: bool,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-    scratch: &mut ClothScratch,
 ) {
-    if built.skin.is_none() {
+    if cloth.built.skin.is_none() {
         return;
     }
+    let (state, scratch) = (&mut *cloth.state, &mut *cloth.scratch);
     let was_there = goes_on && !state.pose.places.is_empty();
     std::mem::swap(&mut scratch.pose, &mut state.pose);
     let (from, to) = (&mut scratch.pose, &state.pose);
@@ -169,7 +158,7 @@ pub(crate) fn move_with_pose(
         && scratch.teleports
         && let Some(turn) = turn
     {
-        teleport_to_pose([from, to], turn, particles);
+        teleport_to_pose([from, to], turn, &mut cloth.particles);
         // They move with their skeleton, not with the target that they are attached to.
         state.attachments.first_target = None;
     }
@@ -183,10 +172,9 @@ pub(crate) fn move_with_pose(
             from.normals.clone_from(&to.normals);
         }
     }
-    let (constraints, motions) = (&mut scratch.constraints, &mut scratch.pins);
-    follow_pose([from, to], jumps, particles, built, constraints, motions);
-    if constraints.travel() > 0.0 {
-        state.wake();
+    follow_pose(cloth, jumps);
+    if cloth.scratch.constraints.travel() > 0.0 {
+        cloth.state.wake();
     }
 }
 
@@ -202,16 +190,16 @@ fn teleport_to_pose([from, to]: [&Pose; 2], turn: Quat, particles: &mut Mut<Clot
 /// Moves held particles with the pose in this tick, by `motions`. Keeps the others in their ball and outside their
 /// backstop. `from` and `to` are in the cloth's frame. They are equal if the cloth is new or teleports, and held
 /// particles are put there.
-fn follow_pose(
-    [from, to]: [&Pose; 2],
-    jumps: bool,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    constraints: &mut MotionConstraints,
-    motions: &mut Vec<PinMotion>,
-) {
+fn follow_pose(cloth: &mut PrepareQueryItem, jumps: bool) {
+    let ClothScratch {
+        pose: from,
+        constraints,
+        pins: motions,
+        ..
+    } = &mut *cloth.scratch;
+    let (to, particles) = (&cloth.state.pose, &mut cloth.particles);
     constraints.clear();
-    let Some(limits) = &built.skin else {
+    let Some(limits) = &cloth.built.skin else {
         return;
     };
     let is_free = |index: &usize| particles.inverse_mass(*index) != Some(0.0);
@@ -258,6 +246,6 @@ fn follow_pose(
         }
     }
     if is_new {
-        built.forget_tethers();
+        cloth.built.forget_tethers();
     }
 }

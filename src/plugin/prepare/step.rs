@@ -131,7 +131,7 @@ pub(super) fn prepare_contact(
     acceleration: Vec3,
     seconds: f32,
 ) {
-    let (particles, state) = (&cloth.particles, &mut *cloth.state);
+    let state = &mut *cloth.state;
     let (built, scratch) = (&*cloth.built, &mut *cloth.scratch);
     let material = &inputs.material;
     scratch.self_collision = inputs.self_collision;
@@ -160,13 +160,5 @@ pub(super) fn prepare_contact(
     scratch.reach =
         reach(state, built.surface(), pins, acceleration, seconds) + scratch.constraints.travel();
     state.lod.reach = scratch.reach;
-    update_bounds(
-        particles,
-        &cloth.frame,
-        built,
-        state,
-        scratch,
-        &mut cloth.search,
-        &mut cloth.bounds,
-    );
+    update_bounds(cloth);
 }

@@ -4,7 +4,6 @@ use std::mem;
 
 use bevy::{
     ecs::{
-        change_detection::Mut,
         entity::Entity,
         query::Changed,
         system::{Query, ResMut},
@@ -12,15 +11,9 @@ use bevy::{
     tasks::{AsyncComputeTaskPool, TaskPool},
 };
 
-use super::{
-    build_inputs::{Build, BuildInputs},
-    follow::follow_masses,
-};
+use super::build_inputs::{Build, Building};
 use crate::{
-    cloth::{
-        ClothError, ClothMaterial, ClothMaterialMap, ClothParticles, ClothTears, MaterialFactors,
-        Surface,
-    },
+    cloth::{ClothError, ClothMaterial, ClothMaterialMap, ClothTears, MaterialFactors, Surface},
     plugin::{
         authoring::Attached,
         state::{BuildRequest, ClothBuilt, ClothState, Recipe, SharedParts},
@@ -66,66 +59,70 @@ pub(crate) fn build_torn_ahead(
     }
 }
 
-/// Takes over other tears, or the change of a grid to a mesh and back. Particles keep their places, motion and indices, and new ones follow.
-///
-/// # Errors
-/// [`NoSuchEdge`](crate::cloth::TearError::NoSuchEdge); the cloth stays as it was.
-pub(super) fn follow_tears(
-    wanted: &BuildInputs,
-    parts: &mut SharedParts,
-    particles: &mut Mut<ClothParticles>,
-    built: &mut ClothBuilt,
-    state: &mut ClothState,
-) -> Result<Build, ClothError> {
-    let Some(known) = &built.shared.recipe else {
-        return Ok(Build::Kept);
-    };
-    let recipe = Recipe {
-        tears: wanted.tears(),
-        as_mesh: wanted.is_as_mesh(),
-        ..known.clone()
-    };
-    let before = built.surface().clone();
-    // The known parts don't keep it.
-    let _kept_alive = parts.built_ahead(&recipe);
-    let mut factors = MaterialFactors::default();
-    let of = |surface: &Surface| {
-        factors = wanted.factors(surface)?;
-        Ok(factors.stiffness.clone())
-    };
-    let shared = parts.get(&recipe, wanted.material, Some(&built.shared), of, || {
-        recipe.opened(before.whole())
-    })?;
-    let surface = &shared.surface;
-    // Other changes are those of the same particles.
-    follow_masses(wanted, particles, built, state)?;
-    let Some(parents) = surface.parents_in(&before) else {
-        return Ok(Build::Kept);
-    };
-    let torn = particles.torn(&before, surface, &parents, wanted.has_layers);
-    **particles = torn;
-    let count = recipe.tears.count_beyond(built.tears());
-    let at = ends_of_tear(
-        [&recipe.tears, built.tears()],
-        before.len(),
-        particles.len(),
-    );
-    built.unreported_tear = at.map(|ends| (ends, count));
-    hold_parts(surface, &parents, state);
-    state.pose.take_parts(&parents);
-    state.creases = creases_of_torn(&before, surface, &state.creases);
-    let solver = mem::replace(&mut built.solver, shared.new_solver());
-    built.forget_tethers();
-    let old = (solver, mem::replace(&mut built.shared, shared));
-    // To free their memory takes long.
-    AsyncComputeTaskPool::get_or_init(TaskPool::default)
-        .spawn(async move { drop(old) })
-        .detach();
-    if let Some(from) = &mut built.from {
-        from.torn = wanted.torn();
-        from.factors = factors;
+impl Building<'_, '_> {
+    /// Takes over other tears, or the change of a grid to a mesh and back. Particles keep their places, motion and indices, and new ones follow.
+    ///
+    /// # Errors
+    /// [`NoSuchEdge`](crate::cloth::TearError::NoSuchEdge); the cloth stays as it was.
+    pub(super) fn follow_tears(&mut self) -> Result<Build, ClothError> {
+        let wanted = self.wanted;
+        let Some(known) = &self.built.shared.recipe else {
+            return Ok(Build::Kept);
+        };
+        let recipe = Recipe {
+            tears: wanted.tears.clone(),
+            as_mesh: wanted.is_as_mesh(),
+            ..known.clone()
+        };
+        let before = self.built.surface().clone();
+        // The known parts don't keep it.
+        let _kept_alive = self.parts.built_ahead(&recipe);
+        let mut factors = MaterialFactors::default();
+        let of = |surface: &Surface| {
+            factors = wanted.factors(surface)?;
+            Ok(factors.stiffness.clone())
+        };
+        let known = Some(&*self.built.shared);
+        let shared = self.parts.get(&recipe, wanted.material, known, of, || {
+            recipe.opened(before.whole())
+        })?;
+        let surface = &shared.surface;
+        // Other changes are those of the same particles.
+        self.follow_masses()?;
+        let Some(parents) = surface.parents_in(&before) else {
+            return Ok(Build::Kept);
+        };
+        let Self {
+            particles,
+            built,
+            state,
+            ..
+        } = self;
+        let torn = particles.torn(&before, surface, &parents, wanted.has_layers);
+        ***particles = torn;
+        let count = recipe.tears.count_beyond(built.tears());
+        let at = ends_of_tear(
+            [&recipe.tears, built.tears()],
+            before.len(),
+            particles.len(),
+        );
+        built.unreported_tear = at.map(|ends| (ends, count));
+        hold_parts(surface, &parents, state);
+        state.pose.take_parts(&parents);
+        state.creases = creases_of_torn(&before, surface, &state.creases);
+        let solver = mem::replace(&mut built.solver, shared.new_solver());
+        built.forget_tethers();
+        let old = (solver, mem::replace(&mut built.shared, shared));
+        // To free their memory takes long.
+        AsyncComputeTaskPool::get_or_init(TaskPool::default)
+            .spawn(async move { drop(old) })
+            .detach();
+        if let Some(from) = &mut built.from {
+            from.changes.tears = wanted.changes.tears;
+            from.factors = factors;
+        }
+        Ok(Build::Resampled)
     }
-    Ok(Build::Resampled)
 }
 
 /// The first new particle, twice, or the ends of the last torn edge, if nothing opened. Both particles exist as long as this surface does.
@@ -172,7 +169,7 @@ mod tests {
         app.finish();
         app.cleanup();
         (0..3).for_each(|_| app.update());
-        let building = |app: &App| app.world().resource::<SharedParts>().building();
+        let building = |app: &App| app.world().resource::<SharedParts>().builds.all.len();
         assert_eq!(building(&app), 0);
         let tears = app.world_mut().get_mut::<ClothTears>(cloth);
         tears.expect("it may tear").tear_all([[12, 13], [13, 14]]);

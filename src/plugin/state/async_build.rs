@@ -74,7 +74,7 @@ impl BuildRequest {
 
 /// A task that builds what is requested.
 #[derive(Debug)]
-struct Building {
+pub(crate) struct Building {
     recipe: Recipe,
     task: Task<Result<Shared, ClothError>>,
     /// The cloth that needs it in its next tick, if it is built ahead.
@@ -88,7 +88,7 @@ struct Building {
 /// All tasks that build.
 #[derive(Debug, Default)]
 pub(crate) struct AsyncBuilds {
-    all: Vec<Building>,
+    pub all: Vec<Building>,
 }
 
 impl AsyncBuilds {
@@ -123,12 +123,6 @@ impl AsyncBuilds {
         (building.is_claimed)
             .swap(true, Ordering::Relaxed)
             .then(|| block_on(building.task))
-    }
-
-    /// Number of tasks.
-    #[cfg(test)]
-    pub fn len(&self) -> usize {
-        self.all.len()
     }
 
     /// Begins to build: of `mesh`, if it is made from an asset, or of parts that are made `alike`. A request for

@@ -8,7 +8,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::{notices::Noticed, pose::SkinLimits, shared::Shared, source::Source};
+use super::{notices::Noticed, pose::SkinLimits, recipe::Source, shared::Shared};
 use crate::{
     cloth::{
         ClothError, ClothGrain, ClothMaterial, ClothParticles, ClothTears, MaterialFactors, Pins,
@@ -64,37 +64,40 @@ pub struct ClothBuilt {
     pub(crate) unreported_tear: Option<([u32; 2], usize)>,
 }
 
+/// When the components of a cloth were last changed, those that it has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Changes {
+    pub cloth: Tick,
+    pub grain: Option<Tick>,
+    pub map: Option<Tick>,
+    pub tears: Option<Tick>,
+}
+
 /// The inputs of a cloth, besides the recipe of its surface.
 #[derive(Debug, Clone)]
 pub(crate) struct BuiltFrom {
     pub unevenness: f32,
-    /// When the `Cloth` was last changed.
-    pub changed: Tick,
+    pub changes: Changes,
     pub material: ClothMaterial,
-    /// When its `ClothGrain` was last changed, if it has one.
-    pub grained: Option<Tick>,
-    /// When its `ClothMaterialMap` was last changed, if it has one, and what that gave.
-    pub mapped: Option<Tick>,
+    /// The factors of its `ClothMaterialMap`.
     pub factors: MaterialFactors,
     pub pins: Pins,
-    /// When its `ClothTears` were last changed, if it has them.
-    pub torn: Option<Tick>,
 }
 
 /// The inputs of a cloth that could not be built, besides the recipe of its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FailedBuild {
-    pub changed: Tick,
+    pub changes: Changes,
     pub source: Option<Source>,
     pub material: ClothMaterial,
-    pub grained: Option<Option<Tick>>,
-    pub mapped: Option<Tick>,
-    pub torn: Option<Tick>,
     pub pins: Pins,
     pub scale: Vec3,
     /// Its columns and rows.
     pub particles: [u32; 2],
 }
+
+/// The tears of a cloth that has none.
+pub(crate) static NO_TEARS: ClothTears = ClothTears::none();
 
 impl ClothBuilt {
     /// The surface, scaled.
@@ -124,29 +127,23 @@ impl ClothBuilt {
     }
 
     /// Whether it was made with this grain, which was last changed then. Values are compared only where the game wrote them.
-    pub(crate) fn has_grain(&self, wanted: Option<(&ClothGrain, Option<Tick>)>) -> bool {
+    pub(crate) fn has_grain(&self, wanted: Option<&ClothGrain>, changed: Option<Tick>) -> bool {
         let recipe = self.shared.recipe.as_ref();
         let known = recipe.and_then(|recipe| recipe.grain.as_ref());
-        let grained = self.from.as_ref().and_then(|from| from.grained);
-        match (known, wanted) {
-            (Some(known), Some((grain, changed))) => {
-                changed.is_some() && changed == grained || known == grain
-            }
-            (known, wanted) => known.is_none() && wanted.is_none(),
-        }
+        let grained = self.from.as_ref().and_then(|from| from.changes.grain);
+        let is_unchanged = changed.is_some() && changed == grained;
+        known == wanted || is_unchanged && known.is_some() && wanted.is_some()
     }
 
     /// Whether it is torn by these tears, which were last changed then. Values are compared only where they were written.
-    pub(crate) fn is_torn_by(&self, wanted: Option<(&ClothTears, Tick)>) -> bool {
-        let known = self.from.as_ref().and_then(|from| from.torn);
-        known == wanted.map(|(_, changed)| changed)
-            || wanted.map_or(&[][..], |(tears, _)| tears.edges()) == self.tears().edges()
+    pub(crate) fn is_torn_by(&self, wanted: &ClothTears, changed: Option<Tick>) -> bool {
+        let known = self.from.as_ref().and_then(|from| from.changes.tears);
+        known == changed || wanted.edges() == self.tears().edges()
     }
 
     /// The tears of its surface.
     pub(crate) fn tears(&self) -> &ClothTears {
-        static NONE: ClothTears = ClothTears::none();
-        (self.shared.recipe.as_ref()).map_or(&NONE, |recipe| &recipe.tears)
+        (self.shared.recipe.as_ref()).map_or(&NO_TEARS, |recipe| &recipe.tears)
     }
 
     /// Whether it is a grid that has the surface of a mesh, though nothing is torn.
@@ -158,14 +155,12 @@ impl ClothBuilt {
     /// pins.
     pub(crate) fn is_made_from(
         &self,
-        changed: Tick,
-        mapped: Option<Tick>,
+        changes: &Changes,
         material: &ClothMaterial,
         pins: &Pins,
     ) -> bool {
         self.from.as_ref().is_some_and(|from| {
-            from.changed == changed
-                && from.mapped == mapped
+            (from.changes.cloth, from.changes.map) == (changes.cloth, changes.map)
                 && from.material == *material
                 && from.pins == *pins
         })
@@ -193,18 +188,12 @@ impl ClothBuilt {
         let Some(from) = &self.from else {
             return;
         };
-        let BuiltFrom {
-            material,
-            factors,
-            pins,
-            ..
-        } = from;
         for index in of.clone() {
-            particles.assign_mass(index, self.surface(), material, &factors.density);
+            particles.assign_mass(index, self.surface(), &from.material, &from.factors.density);
         }
         let given: std::collections::HashSet<usize> = of.collect();
         if !given.is_empty() {
-            pins.for_each(self.surface(), |index| {
+            from.pins.for_each(self.surface(), |index| {
                 if given.contains(&index) {
                     particles.pin(index);
                 }
@@ -214,18 +203,12 @@ impl ClothBuilt {
 
     /// Gives pinned particles the masses that the material gives them.
     pub(crate) fn release_pins(&self, particles: &mut ClothParticles) {
-        let Some(BuiltFrom {
-            material, factors, ..
-        }) = &self.from
-        else {
+        let Some(from) = self.from.as_ref().filter(|_| self.matches(particles)) else {
             return;
         };
-        if !self.matches(particles) {
-            return;
-        }
         for index in 0..particles.len() {
             if particles.inverse_mass(index) == Some(0.0) {
-                particles.assign_mass(index, self.surface(), material, &factors.density);
+                particles.assign_mass(index, self.surface(), &from.material, &from.factors.density);
             }
         }
     }
@@ -349,13 +332,15 @@ mod tests {
                 shared: shared(&cloth, &material),
                 from: Some(BuiltFrom {
                     unevenness: 0.0,
-                    changed: Tick::new(0),
+                    changes: Changes {
+                        cloth: Tick::new(0),
+                        grain: None,
+                        map: None,
+                        tears: None,
+                    },
                     material,
-                    grained: None,
-                    mapped: None,
                     factors,
                     pins: Pins::none(),
-                    torn: None,
                 }),
                 ..Default::default()
             };

@@ -10,7 +10,10 @@ use bevy::{
     reflect::Reflect,
 };
 
-use crate::{cloth::ClothError, plugin::naming::Part};
+use crate::{
+    cloth::{ClothError, MeshError},
+    plugin::naming::Part,
+};
 
 /// On a cloth, a collider, a hand or a seam that is left out of the simulation, with the reason. The plugin removes it as soon as the
 /// fault is corrected.
@@ -26,7 +29,7 @@ pub struct ClothFault {
 }
 
 impl ClothFault {
-    /// Marks or clears `entity` by the outcome of the check of one part of it.
+    /// Marks or clears `entity` by the outcome of the check of one part of it. A mesh that is being loaded is no fault.
     pub(crate) fn report(
         commands: &mut Commands,
         entity: Entity,
@@ -34,6 +37,10 @@ impl ClothFault {
         part: Part,
         outcome: Result<(), ClothError>,
     ) {
+        let outcome = match outcome {
+            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
+            outcome => outcome,
+        };
         match (outcome, known) {
             (Ok(()), Some(known)) if known.part == part => {
                 commands.entity(entity).try_remove::<Self>();

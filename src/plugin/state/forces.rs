@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{
-        entity::{Entity, EntityMapper, MapEntities},
+        entity::{Entity, MapEntities},
         query::QueryData,
     },
     math::Vec3,
@@ -61,22 +61,15 @@ impl GameForces {
 }
 
 /// The forces by which a cloth was last moved, in the world.
-#[derive(Debug, Default, Clone, PartialEq)]
+#[derive(MapEntities, Debug, Default, Clone, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ForceState {
     /// Without a wind that it does not meet.
     known: GameForces,
+    #[entities]
     zones: Vec<PlacedZone>,
     /// The solver's memory of the last tick.
     pub memory: ForceMemory,
-}
-
-impl MapEntities for ForceState {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        for zone in &mut self.zones {
-            zone.entity = mapper.get_mapped(zone.entity);
-        }
-    }
 }
 
 impl ForceState {

@@ -2,21 +2,24 @@
 
 use bevy::{
     ecs::{
-        change_detection::{DetectChanges, Ref, Tick},
+        change_detection::{DetectChanges, Ref},
         query::QueryData,
     },
     math::Vec3,
 };
 
-use super::forces::ForceQuery;
+use super::{
+    built::{Changes, NO_TEARS},
+    forces::ForceQuery,
+};
 use crate::{
     cloth::{
-        Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape, ClothSkin,
-        ClothTearing, ClothTears, Pins, QuantityError, Surface,
+        Allowed, Cloth, ClothError, ClothGrain, ClothMaterial, ClothMaterialMap, ClothShape,
+        ClothSkin, ClothTearing, ClothTears, Pins, Surface,
     },
     contact::{ClothSelfCollision, NarrowPhase},
     hierarchy::SearchMethod,
-    plugin::authoring::{ClothAttachments, ClothLod, ClothTeleport},
+    plugin::authoring::{ClothAttachment, ClothAttachments, ClothLod, ClothTeleport},
     solver::{ClothCreasing, ClothSettings},
 };
 
@@ -47,33 +50,50 @@ pub(crate) struct GameQuery {
 /// The grain of a mesh from which the game took its [`ClothGrain`], or that never had one.
 static BY_TEXTURE: ClothGrain = ClothGrain::by_texture();
 
+/// The pins of a cloth from which the game took its [`Pins`].
+static NO_PINS: Pins = Pins::none();
+
 impl GameQueryItem<'_, '_> {
-    /// When the map of its material was last changed, if it has one.
-    pub fn mapped(&self) -> Option<Tick> {
-        self.map.as_ref().map(DetectChanges::last_changed)
+    /// When the components that it is built from were last changed: the grain only if it matters.
+    pub fn changes(&self) -> Changes {
+        let grain = self.grain.as_ref().filter(|_| self.grain().is_some());
+        Changes {
+            cloth: self.cloth.last_changed(),
+            grain: grain.map(DetectChanges::last_changed),
+            map: self.map.as_ref().map(DetectChanges::last_changed),
+            tears: self.torn.0.as_ref().map(DetectChanges::last_changed),
+        }
     }
 
-    /// The tears and when they were last changed, if it has any.
-    pub fn tears(&self) -> Option<(&ClothTears, Tick)> {
-        let tears = self.torn.0.as_ref()?;
-        Some((&**tears, tears.last_changed()))
+    /// The tears; none if it has none.
+    pub fn tears(&self) -> &ClothTears {
+        self.torn.0.as_deref().unwrap_or(&NO_TEARS)
     }
 
-    /// The grain and when it was last changed, if the cloth is a mesh whose material differs along its weft. Where its strength alone
-    /// differs, only a [`ClothGrain`] of the game's.
-    pub fn grain(&self) -> Option<(&ClothGrain, Option<Tick>)> {
+    /// The pins; none if it has none.
+    pub fn pins(&self) -> &Pins {
+        self.pins.unwrap_or(&NO_PINS)
+    }
+
+    /// The attachments, if it has any.
+    pub fn attachments(&self) -> &[ClothAttachment] {
+        let attachments = self.attachments.map(ClothAttachments::as_slice);
+        attachments.unwrap_or_default()
+    }
+
+    /// The grain, if the cloth is a mesh whose material differs along its weft. Where its strength alone differs, only a
+    /// [`ClothGrain`] of the game's.
+    pub fn grain(&self) -> Option<&ClothGrain> {
         let shape = &self.cloth.shape;
         let is_grid = shape.is_rope() || matches!(shape, ClothShape::Grid(_));
-        let own = self.grain.as_ref();
+        let own = self.grain.as_deref();
         let is_woven = self.material.is_some_and(ClothMaterial::is_woven);
         let differs = |of: &ClothTearing| of.strength != of.weft_strength;
         let is_stronger = own.is_some() && self.torn.1.is_some_and(differs);
         if is_grid || !(is_woven || is_stronger) {
             return None;
         }
-        Some(own.map_or((&BY_TEXTURE, None), |grain| {
-            (&**grain, Some(grain.last_changed()))
-        }))
+        Some(own.unwrap_or(&BY_TEXTURE))
     }
 }
 
@@ -111,9 +131,7 @@ impl Inputs {
             creasing.validate()?;
         }
         let gravity = settings.gravity.unwrap_or(gravity);
-        for value in gravity.to_array() {
-            QuantityError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
-        }
+        Allowed::FINITE.check("gravity (m/s²)", gravity.to_array())?;
         Ok(Self {
             settings,
             material,

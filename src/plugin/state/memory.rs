@@ -9,9 +9,7 @@ use bevy::{
     math::Isometry3d,
 };
 
-use super::{
-    excess::Excess, forces::ForceState, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose,
-};
+use super::{forces::ForceState, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose};
 use crate::{
     cloth::ClothParticles,
     contact::Carrier,
@@ -69,12 +67,14 @@ pub(crate) struct Reported {
 }
 
 /// The attachments of a cloth.
-#[derive(Debug, Default, Clone)]
+#[derive(MapEntities, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct AttachmentMemory {
     /// Those from which `attached` was made, and the entities that they name.
     #[cfg_attr(feature = "serialize", serde(skip))]
+    #[entities]
     pub given: Vec<ClothAttachment>,
+    #[entities]
     pub targets: Vec<Entity>,
     pub attached: Vec<Attached>,
     /// Last place of the first attachment's target.
@@ -87,13 +87,6 @@ impl AttachmentMemory {
         self.targets.clone_from(&other.targets);
         self.attached.clone_from(&other.attached);
         self.first_target = other.first_target;
-    }
-
-    /// Forgets all but the targets.
-    fn detach(&mut self) {
-        self.attached.clear();
-        self.given.clear();
-        self.first_target = None;
     }
 }
 
@@ -192,24 +185,81 @@ impl ClothState {
         self.largest_gravity = 0.0;
         self.carriers.clear();
         self.creases.clear();
-        self.attachments.detach();
+        self.attachments.attached.clear();
+        self.attachments.given.clear();
+        self.attachments.first_target = None;
         self.pose = Pose::default();
     }
 }
 
 impl MapEntities for ClothState {
     fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        let targets = self.attachments.targets.iter_mut();
-        let carried = self.carriers.iter_mut().map(|(entity, _)| entity);
-        for entity in targets.chain(carried) {
-            *entity = mapper.get_mapped(*entity);
+        for (body, _) in &mut self.carriers {
+            body.map_entities(mapper);
         }
-        for attachment in &mut self.attachments.given {
-            attachment.map_entities(mapper);
-        }
-        for known in self.resting.colliders_mut() {
-            known.map_entities(mapper);
-        }
+        self.attachments.map_entities(mapper);
+        self.resting.map_entities(mapper);
         self.inputs.forces.map_entities(mapper);
+    }
+}
+
+/// Ticks in a row before a report: a blow may stretch a cloth for an instant, which does no harm.
+const TICKS: u32 = 8;
+
+/// A quantity that becomes this many times as large as reported is reported again.
+const WORSE: f32 = 10.0;
+
+/// The excess of a cloth over a limit.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Excess {
+    /// Number of ticks in a row.
+    ticks: u32,
+    /// The quantity that was reported, 0 before that.
+    reported: f32,
+}
+
+impl Excess {
+    /// Takes the quantity of a tick, if it was beyond the limit then. Returns whether to report it.
+    pub fn observe(&mut self, limit: ClothLimit, quantity: Option<f32>) -> bool {
+        let Some(quantity) = quantity else {
+            self.ticks = 0;
+            return false;
+        };
+        self.ticks = self.ticks.saturating_add(1);
+        // A collider passes through in a single tick, and a tolerance holds in each tick or not at all.
+        let is_at_once = matches!(
+            limit,
+            ClothLimit::SmallFastCollider
+                | ClothLimit::Tolerance
+                | ClothLimit::Layers
+                | ClothLimit::Embedded
+        );
+        let lasts = self.ticks >= TICKS || is_at_once;
+        let is_reported = self.reported == 0.0 || quantity >= WORSE * self.reported;
+        if lasts && is_reported {
+            self.reported = quantity;
+        }
+        lasts && is_reported
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMIT: ClothLimit = ClothLimit::Stretch;
+
+    #[test]
+    fn is_reported_after_eight_ticks_and_again_when_ten_times_worse() {
+        let mut excess = Excess::default();
+        let mut observe = |quantity| excess.observe(LIMIT, quantity);
+        assert!((1..TICKS).all(|_| !observe(Some(0.2))));
+        assert!(observe(Some(0.2)));
+        assert!(!observe(Some(1.9)));
+        assert!(!observe(None));
+        assert!((1..TICKS).all(|_| !observe(Some(2.1))), "an instant again");
+        assert!(observe(Some(2.1)));
+        assert!(!observe(Some(2.2)));
     }
 }

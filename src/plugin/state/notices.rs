@@ -7,30 +7,28 @@ use bevy::{
         system::{Query, Res, ResMut},
     },
     log::warn,
+    platform::collections::HashSet,
 };
 
 use crate::plugin::naming::{Named, Part};
 
 /// What can hardly be meant, and is no fault.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Notice {
     /// A predicate holds for no particle.
     PinsNothing,
     /// A tick can't be simulated in the time that it stands for.
     TooSlow,
-    /// It is drawn in place of a mesh of the game's.
-    #[cfg(feature = "mesh")]
-    ReplacesMesh,
 }
 
 /// Notices that have yet to be logged, each with its cloth and its text.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Notices(Vec<(Entity, Notice, String)>);
+pub(crate) struct Notices(Vec<(Entity, String)>);
 
 impl Notices {
     /// Has a notice of a cloth be logged as the frame ends.
-    pub fn add(&mut self, cloth: Entity, notice: Notice, text: String) {
-        self.0.push((cloth, notice, text));
+    pub fn add(&mut self, cloth: Entity, text: String) {
+        self.0.push((cloth, text));
     }
 
     /// Whether there is anything to log.
@@ -44,33 +42,22 @@ impl Notices {
 pub(crate) struct Noticed {
     /// Whether it was built, and not looked at since.
     pub is_due: bool,
-    given: Vec<Notice>,
-}
-
-impl Noticed {
-    /// Whether it is the first notice of its kind.
-    pub fn is_first(&mut self, notice: Notice) -> bool {
-        let is_first = !self.given.contains(&notice);
-        if is_first {
-            self.given.push(notice);
-        }
-        is_first
-    }
+    pub given: HashSet<Notice>,
 }
 
 /// Logs the notices of a frame; equal texts in one line.
 pub(crate) fn log_notices(mut notices: ResMut<Notices>, names: Query<Named>) {
     let mut all = std::mem::take(&mut notices.0);
-    all.retain(|(cloth, ..)| names.contains(*cloth));
-    while let Some((cloth, _, text)) = all.first().cloned() {
+    all.retain(|(cloth, _)| names.contains(*cloth));
+    while let Some((cloth, text)) = all.first().cloned() {
         let Ok(name) = names.get(cloth) else {
             return;
         };
         let name = name.describe(Part::Cloth);
-        match all.iter().filter(|(.., other)| *other == text).count() {
+        match all.iter().filter(|(_, other)| *other == text).count() {
             1 => warn!("{name}: {text}"),
             alike => warn!("{name} and {} more: {text}", alike - 1),
         }
-        all.retain(|(.., other)| *other != text);
+        all.retain(|(_, other)| *other != text);
     }
 }

@@ -1,6 +1,9 @@
 //! Pieces of a torn cloth, which fall asleep one by one.
 
-use bevy::{ecs::entity::Entity, math::Vec3};
+use bevy::{
+    ecs::entity::{Entity, MapEntities},
+    math::Vec3,
+};
 
 use super::resting::RestsOn;
 use crate::{
@@ -10,11 +13,13 @@ use crate::{
 };
 
 /// The colliders that a cloth rests on, and the rest of its pieces.
-#[derive(Debug, Default, Clone)]
+#[derive(MapEntities, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Resting {
     /// The colliders that it touched as it fell asleep, each with its place then.
+    #[entities]
     pub on: Vec<RestsOn>,
+    #[entities]
     pub pieces: Pieces,
 }
 
@@ -32,18 +37,19 @@ impl Resting {
 }
 
 /// The pieces of a torn cloth. One that has come to rest sleeps while others move.
-#[derive(Debug, Default, Clone)]
+#[derive(MapEntities, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pieces {
     /// The piece of each particle. Empty while nothing is known of them, or there is only one.
     of_particle: Vec<u32>,
+    #[entities]
     all: Vec<Piece>,
     /// Where each particle was in the tick after its piece was last seen to move (m).
     origin: Vec<Vec3>,
 }
 
 /// A connected piece of cloth.
-#[derive(Debug, Default, Clone)]
+#[derive(MapEntities, Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Piece {
     /// For how long its particles have been near their places (s); 0 if it moved in the last tick, or was woken.
@@ -56,6 +62,7 @@ pub(crate) struct Piece {
     corners: [Vec3; 2],
     is_asleep: bool,
     /// The colliders near it as it fell asleep.
+    #[entities]
     rests_on: Vec<RestsOn>,
 }
 

@@ -157,11 +157,7 @@ impl Pose {
         for (index, joint) in self.joints.iter_mut().enumerate() {
             *joint = shift.affine(*joint, now.get(index).copied());
         }
-        let [before, after] = frames;
-        self.frame = match self.frame == before {
-            true => after,
-            false => self.frame.shifted(shift, None),
-        };
+        self.frame = self.frame.shifted_with(shift, frames);
     }
 
     /// Takes over other particles, each in the place of one of the known ones.

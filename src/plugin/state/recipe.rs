@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use bevy::math::Vec3;
+#[cfg(feature = "mesh")]
+use bevy::{asset::AssetId, mesh::Mesh};
 
-use super::source::Source;
 use crate::cloth::{ClothError, ClothGrain, ClothShape, ClothTears, Surface, TriangleMesh};
 
 /// The inputs of a surface.
@@ -71,3 +72,16 @@ impl PartialEq for KnownShape {
         Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
     }
 }
+
+/// A mesh, and how often it had been changed.
+#[cfg(feature = "mesh")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Source {
+    pub mesh: AssetId<Mesh>,
+    pub version: u32,
+}
+
+/// Without Bevy's meshes there is none.
+#[cfg(not(feature = "mesh"))]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Source {}

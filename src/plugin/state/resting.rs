@@ -1,7 +1,7 @@
 //! The colliders that a cloth sleeps on.
 
 use bevy::{
-    ecs::entity::{Entity, EntityMapper, MapEntities},
+    ecs::entity::{Entity, MapEntities},
     math::{Isometry3d, Vec3},
 };
 
@@ -18,9 +18,10 @@ const ASIDE: f32 = 2.0e-3;
 const SAME: f32 = 0.05;
 
 /// A collider that a cloth touched as it fell asleep, and its path then, in the cloth's frame.
-#[derive(Debug, Clone)]
+#[derive(MapEntities, Debug, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RestsOn {
+    #[entities]
     pub entity: Entity,
     /// `None` in a snapshot that was written and read: shapes are the game's.
     #[cfg_attr(feature = "serialize", serde(skip))]
@@ -37,20 +38,13 @@ pub(crate) struct RestsOn {
 
 impl RestsOn {
     pub fn new(entity: Entity, collider: &MovingCollider) -> Self {
-        let MovingCollider {
-            shape,
-            from,
-            to,
-            turn,
-            body,
-        } = collider.clone();
         Self {
             entity,
-            shape: Some(shape),
-            from,
-            to,
-            turn,
-            body,
+            shape: Some(collider.shape.clone()),
+            from: collider.from,
+            to: collider.to,
+            turn: collider.turn,
+            body: collider.body,
             slack: 0.0,
             held: 0,
         }
@@ -115,11 +109,5 @@ impl RestsOn {
             (self.from, self.to, self.turn) = (collider.from, collider.to, collider.turn);
         }
         rests
-    }
-}
-
-impl MapEntities for RestsOn {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        self.entity = mapper.get_mapped(self.entity);
     }
 }

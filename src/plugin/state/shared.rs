@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::{recipe::Recipe, source::Source};
+use super::recipe::{Recipe, Source};
 use crate::{
     cloth::{
         ClothError, ClothMaterial, ClothStiffening, Skinning, SpringKind, Springs,
@@ -64,9 +64,7 @@ impl Shared {
         let bending = || match alike.iter().find(|of| bends_as(of)) {
             Some(known) => known.solver.bending().cloned(),
             None => {
-                let is_as_rigid = |of: &&Self| {
-                    of.stiffnesses.everywhere.bending == stiffnesses.everywhere.bending
-                };
+                let is_as_rigid = |of: &&Self| of.stiffnesses.bending == stiffnesses.bending;
                 let known = before.filter(is_as_rigid);
                 let known = known.and_then(|of| Some((of.solver.bending()?, &*of.surface)));
                 Bending::with_factors(&surface, material, factors.clone(), known)
@@ -158,12 +156,6 @@ impl Shared {
 /// The values of a material that its solver depends on, and the factors of its particles.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Stiffnesses {
-    everywhere: Stiffness,
-    factors: Arc<StiffnessFactors>,
-}
-
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
-struct Stiffness {
     /// Compliances along weft and warp, and of shear (m/N).
     springs: ([f32; 2], f32),
     /// Whether anything differs along weft and warp: a mesh's springs depend on that.
@@ -171,43 +163,30 @@ struct Stiffness {
     stiffening: Option<ClothStiffening>,
     /// Flexural rigidities of strips along weft and warp (N·m).
     bending: [f32; 2],
+    /// The factors of each place.
+    factors: Arc<StiffnessFactors>,
 }
 
 impl Stiffnesses {
     pub fn of(material: &ClothMaterial, factors: &Arc<StiffnessFactors>) -> Self {
         Self {
-            everywhere: Stiffness::of(material),
-            factors: factors.clone(),
-        }
-    }
-
-    /// Whether a solver is the same for both materials.
-    pub fn are_alike(a: &ClothMaterial, b: &ClothMaterial) -> bool {
-        Stiffness::of(a) == Stiffness::of(b)
-    }
-
-    /// Whether a surface has the same springs with both.
-    fn has_springs_of(&self, other: &Self) -> bool {
-        let springs = |of: &Stiffness| (of.springs, of.is_woven, of.stiffening);
-        springs(&self.everywhere) == springs(&other.everywhere)
-            && self.factors.stretch == other.factors.stretch
-    }
-
-    /// Whether a surface resists bending alike with both.
-    fn bends_as(&self, other: &Self) -> bool {
-        self.everywhere.bending == other.everywhere.bending
-            && self.factors.bending == other.factors.bending
-    }
-}
-
-impl Stiffness {
-    fn of(material: &ClothMaterial) -> Self {
-        Self {
             springs: (material.stretch_compliances(), material.shear_compliance),
             is_woven: material.is_woven(),
             stiffening: material.stiffening,
             bending: material.bend_rigidities(),
+            factors: factors.clone(),
         }
+    }
+
+    /// Whether a surface has the same springs with both.
+    fn has_springs_of(&self, other: &Self) -> bool {
+        let springs = |of: &Self| (of.springs, of.is_woven, of.stiffening);
+        springs(self) == springs(other) && self.factors.stretch == other.factors.stretch
+    }
+
+    /// Whether a surface resists bending alike with both.
+    fn bends_as(&self, other: &Self) -> bool {
+        self.bending == other.bending && self.factors.bending == other.factors.bending
     }
 }
 

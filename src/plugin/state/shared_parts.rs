@@ -18,7 +18,7 @@ use crate::{
 #[derive(Resource, Debug, Default)]
 pub(crate) struct SharedParts {
     known: Vec<Weak<Shared>>,
-    builds: AsyncBuilds,
+    pub builds: AsyncBuilds,
 }
 
 impl SharedParts {
@@ -109,22 +109,11 @@ impl SharedParts {
         built.ok().map(|built| self.keep(built))
     }
 
-    /// Number of tasks that build.
-    #[cfg(test)]
-    pub fn building(&self) -> usize {
-        self.builds.len()
-    }
-
     /// All that is made of a recipe.
     fn alike(&self, recipe: &Recipe) -> Vec<Arc<Shared>> {
         let all = self.known.iter().filter_map(Weak::upgrade);
         all.filter(|known| known.recipe.as_ref() == Some(recipe))
             .collect()
-    }
-
-    /// Begins a tick.
-    pub fn begin_tick(&mut self) {
-        self.builds.begin_tick();
     }
 
     /// The same for a cloth whose material, or the factors of it, have changed.

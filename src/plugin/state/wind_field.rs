@@ -130,29 +130,25 @@ impl WindField {
         if let Some(own) = own {
             own.validate()?;
         }
-        let ClothAir {
-            drag,
-            lift,
-            velocity,
-        } = own.copied().unwrap_or_default();
+        let of_cloth = own.copied().unwrap_or_default();
         let world = self.world.clone().transpose()?;
-        let (density, world) = match (world, velocity) {
+        let (density, world) = match (world, of_cloth.velocity) {
             (None, None) if self.zones.is_empty() => return Ok(None),
             (None, _) => (DENSITY, None),
             (Some(world), _) => (world.density, Some(world)),
         };
         // The velocity of a `ClothAir` has neither gusts nor eddies.
-        let (velocity, deviation) = match (velocity, world) {
+        let (velocity, deviation) = match (of_cloth.velocity, world) {
             (Some(own), _) => (own, 0.0),
             (None, Some(world)) => (world.velocity, world.deviation),
             (None, None) => (Vec3::ZERO, 0.0),
         };
         Ok(Some(EffectiveWind {
-            is_everywhere: world.is_some() || own.is_some_and(|own| own.velocity.is_some()),
+            is_everywhere: world.is_some() || of_cloth.velocity.is_some(),
             air: Air {
                 density,
-                drag,
-                lift,
+                drag: of_cloth.drag,
+                lift: of_cloth.lift,
                 wind: velocity,
             },
             deviation,

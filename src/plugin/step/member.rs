@@ -51,8 +51,14 @@ pub(super) fn members<'w, 's>(
 pub(super) fn participants<'a>(members: &'a mut [Member]) -> Few<Participant<'a>> {
     let each = members.iter_mut();
     each.filter_map(|member| {
-        let settings = member.cloth.scratch.self_collision?;
-        Some(member.cloth.participant(settings, member.to_common))
+        let cloth = &mut member.cloth;
+        Some(Participant {
+            settings: cloth.scratch.self_collision?,
+            particles: &mut cloth.particles,
+            sheet: cloth.built.shared.sheet(),
+            to_common: member.to_common,
+            is_fixed: cloth.state.rest.is_asleep(),
+        })
     })
     .collect()
 }

@@ -54,12 +54,8 @@ pub(crate) fn push_bodies(
             held.extend(bodies.map(|on| on.entity));
         }
         let cloth = (order.copied().unwrap_or_default(), cloth);
-        pushes.extend(
-            scratch
-                .pushed
-                .iter()
-                .map(|&(body, change)| (cloth, body, change)),
-        );
+        let pushed = scratch.pushed.iter();
+        pushes.extend(pushed.map(|&(body, change)| (cloth, body, change)));
     }
     held.sort_unstable();
     let seconds = time.map_or(0.0, |time| time.delta_secs());

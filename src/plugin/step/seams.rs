@@ -13,7 +13,7 @@ use crate::{
         frame::relative,
         prepare::Island,
     },
-    solver::{Seam, SeamCloth, SeamPull, StartedTick, SubStep, Substepping},
+    solver::{SeamPull, StartedTick, SubStep, Substepping},
 };
 
 pub(crate) type SewnSeams<'w, 's> = Query<'w, 's, (&'static ClothSeam, &'static mut ClothStitches)>;
@@ -127,10 +127,18 @@ impl<'w> Sewing<'w> {
         dt: f32,
     ) {
         for sewn in &mut self.0 {
-            let pull = sewn.pull;
-            let farthest = sewn.solve(members, |seam, cloths| {
-                seam.close(cloths, &pull, seconds, dt)
-            });
+            let (seam, pull) = (&mut sewn.stitches.seam, &sewn.pull);
+            let farthest = match members.get_disjoint_mut(sewn.members) {
+                Ok([first, second]) => {
+                    let cloths = &mut [first.sewn(None), second.sewn(sewn.from_second)];
+                    seam.close(cloths, pull, seconds, dt)
+                }
+                // One cloth twice.
+                Err(_) => {
+                    let cloth = members[sewn.members[0]].sewn(None);
+                    seam.close(&mut [cloth], pull, seconds, dt)
+                }
+            };
             let [a, b] = sewn.members;
             for of in [Some(a), (a != b).then_some(b)].into_iter().flatten() {
                 if let (Some(tick), Some(substep)) = (&mut ticks[of], &mut moved[of]) {
@@ -138,24 +146,6 @@ impl<'w> Sewing<'w> {
                     substep.farthest_move += farthest;
                 }
             }
-        }
-    }
-}
-
-impl Sewn<'_> {
-    fn solve<R: Default>(
-        &mut self,
-        members: &mut [Member],
-        solve: impl FnOnce(&mut Seam, &mut [SeamCloth]) -> R,
-    ) -> R {
-        let seam = &mut self.stitches.seam;
-        match members.get_disjoint_mut(self.members) {
-            Ok([first, second]) => {
-                let cloths = &mut [first.sewn(None), second.sewn(self.from_second)];
-                solve(seam, cloths)
-            }
-            // One cloth twice.
-            Err(_) => solve(seam, &mut [members[self.members[0]].sewn(None)]),
         }
     }
 }

@@ -137,17 +137,14 @@ fn advance(
 /// A sub-step of all, in this order: springs, poses, seams, colliders, layers. It ends at a time of the tick, and takes `dt` (s).
 fn substep(
     members: &mut [Member],
-    Run {
-        ticks,
-        moved,
-        is_pushed,
-    }: &mut Run,
+    run: &mut Run,
     sewing: &mut Sewing,
     mut contact: Option<&mut MutualContact>,
     [time, dt]: [f32; 2],
     meets: &impl Fn(usize, usize) -> bool,
     colliders: &Colliders,
 ) {
+    let (ticks, moved) = (&mut run.ticks, &mut run.moved);
     moved.clear();
     let each = members.iter_mut().zip(&mut *ticks);
     moved.extend(each.map(|(Member { cloth, .. }, tick)| {
@@ -173,6 +170,7 @@ fn substep(
     let Some(contact) = contact else {
         return;
     };
+    let is_pushed = &mut run.is_pushed;
     is_pushed.clear();
     is_pushed.resize(members.len(), false);
     let farthest = contact.respond(&mut participants(members), meets, dt, is_pushed);

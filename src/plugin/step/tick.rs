@@ -1,23 +1,15 @@
 //! A cloth in its tick: what each sub-step does to it, and what the tick leaves.
 
 use bevy::{
-    ecs::{
-        change_detection::DetectChanges,
-        entity::{Entity, EntityHashSet},
-        query::QueryData,
-        system::Query,
-    },
-    math::{Isometry3d, Vec3},
+    ecs::{change_detection::DetectChanges, entity::Entity, query::QueryData, system::Query},
+    math::Vec3,
 };
 
 use crate::{
     cloth::ClothParticles,
-    contact::{
-        BodyChange, ClothLayers, ClothSelfCollision, ColliderShape, MovingCollider, Participant,
-    },
+    contact::{BodyChange, ClothLayers, ColliderShape},
     hierarchy::Core,
     plugin::{
-        authoring::Carried,
         frame::ClothFrame,
         prepare::ColliderMotion,
         state::{ClothBuilt, ClothContacts, ClothScratch, ClothState, ClothStats, RestsOn},
@@ -225,28 +217,14 @@ impl IntegrateQueryItem<'_, '_> {
         });
     }
 
-    /// The cloth, as contact of cloth with cloth sees it.
-    pub(crate) fn participant(
-        &mut self,
-        settings: ClothSelfCollision,
-        to_common: Option<Isometry3d>,
-    ) -> Participant<'_> {
-        Participant {
-            particles: &mut self.particles,
-            sheet: self.built.shared.sheet(),
-            to_common,
-            settings,
-            is_fixed: self.state.rest.is_asleep(),
-        }
-    }
-
     /// Holds it near its pose as a sub-step ends, if it follows one. Returns whether anything moved.
     pub(crate) fn hold(&mut self, substep: &mut SubStep) -> bool {
         let constraints = &self.scratch.constraints;
         !constraints.is_empty() && constraints.hold(&mut self.particles, substep)
     }
 
-    /// Pushes it out of colliders. Returns whether anything moved.
+    /// Pushes it out of colliders. Those that were far away as the tick began may be near now, and known ones keep their
+    /// number. Returns whether anything moved.
     pub(crate) fn touch(&mut self, substep: SubStep, colliders: &Colliders) -> bool {
         let ClothScratch {
             near,
@@ -256,44 +234,19 @@ impl IntegrateQueryItem<'_, '_> {
             carried,
             ..
         } = &mut *self.scratch;
-        let place = Place {
-            frame: self.frame,
-            carried: *carried,
-            layers: self.layers.copied().unwrap_or_default(),
-        };
+        let layers = self.layers.copied().unwrap_or_default();
         detection.respond(&mut self.particles, contact_settings, substep, |numbered| {
-            add_far(near, near_set, &place, colliders, numbered);
+            near_set.clear();
+            near_set.extend(near.iter().map(|(known, _)| *known));
+            for (entity, motion, others) in colliders {
+                if layers.interacts_with(others.copied().unwrap_or_default())
+                    && !near_set.contains(&entity)
+                    && let Some(collider) = motion.seen_from(self.frame, carried.as_ref())
+                {
+                    numbered.push((near.len(), collider.clone()));
+                    near.push((entity, collider));
+                }
+            }
         })
-    }
-}
-
-/// The frame in which a cloth sees colliders, and its layers.
-struct Place<'a> {
-    frame: &'a ClothFrame,
-    carried: Option<Carried>,
-    layers: ClothLayers,
-}
-
-/// Adds the colliders that were far away as the tick began: they may be near now. Known colliders keep their number.
-fn add_far(
-    near: &mut Vec<(Entity, MovingCollider)>,
-    near_set: &mut EntityHashSet,
-    place: &Place,
-    colliders: &Colliders,
-    numbered: &mut Vec<(usize, MovingCollider)>,
-) {
-    near_set.clear();
-    near_set.extend(near.iter().map(|(known, _)| *known));
-    for (entity, motion, others) in colliders {
-        if others
-            .copied()
-            .unwrap_or_default()
-            .interacts_with(place.layers)
-            && !near_set.contains(&entity)
-            && let Some(collider) = motion.seen_from(place.frame, place.carried.as_ref())
-        {
-            numbered.push((near.len(), collider.clone()));
-            near.push((entity, collider));
-        }
     }
 }

@@ -116,11 +116,7 @@ fn names_below<'a>(
             names.entry(name.as_str()).or_insert(entity);
             is_named |= entity != root;
         }
-        open.extend(
-            children
-                .into_iter()
-                .flat_map(|children| children.iter().rev()),
-        );
+        open.extend(children.into_iter().flatten().rev());
     }
     is_named.then_some(names)
 }

@@ -103,13 +103,8 @@ impl Gathered {
     /// A tick has passed. Returns what is to be logged of a limit, if anything is.
     fn line(&mut self, limit: ClothLimit) -> Option<String> {
         let (cloths, worst) = self.take()?;
-        let Worst {
-            name,
-            figures,
-            caught,
-        } = worst;
-        let (figures, remedy) = (limit.figures(figures), limit.remedy());
-        let remedy = caught.map_or(remedy.into(), |colliders| {
+        let (name, figures) = (worst.name, limit.figures(worst.figures));
+        let remedy = worst.caught.map_or(limit.remedy().into(), |colliders| {
             format!(
                 "caught between {colliders}: move them apart, or let it meet fewer of them with `ClothLayers`"
             )

@@ -36,14 +36,11 @@ pub(crate) fn send_touch_messages(
             now.clear();
         }
         for contact in now.iter() {
-            if let Some(reported) = reported
-                .iter_mut()
-                .find(|reported| reported.collider == contact.collider)
-            {
-                reported.particles = reported.particles.max(contact.particles);
-                reported.deepest_penetration = reported
-                    .deepest_penetration
-                    .max(contact.deepest_penetration);
+            let mut each = reported.iter_mut();
+            if let Some(known) = each.find(|known| known.collider == contact.collider) {
+                let deepest = &mut known.deepest_penetration;
+                *deepest = deepest.max(contact.deepest_penetration);
+                known.particles = known.particles.max(contact.particles);
             } else {
                 reported.push(*contact);
                 started.write(ClothTouchStarted {
@@ -73,11 +70,8 @@ pub(crate) fn send_stopped_messages(
     mut stopped: MessageWriter<ClothTouchStopped>,
 ) {
     if let Ok(contacts) = contacts.get(removed.entity) {
-        stopped.write_batch(
-            contacts
-                .reported
-                .iter()
-                .map(|reported| reported.stopped(removed.entity)),
-        );
+        for reported in &contacts.reported {
+            stopped.write(reported.stopped(removed.entity));
+        }
     }
 }

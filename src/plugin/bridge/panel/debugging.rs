@@ -3,13 +3,15 @@
 use std::mem::discriminant;
 
 use bevy::{
-    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
-    ecs::{change_detection::DetectChangesMut, system::Commands},
+    diagnostic::{Diagnostic, DiagnosticsStore},
+    ecs::{
+        change_detection::DetectChangesMut, entity::Entity, name::Name, query::QueryData,
+        system::Commands,
+    },
 };
 use bevy_egui::egui::{RichText, Ui};
 
 use super::{
-    cloth::PanelClothItem,
     fabric::{show_stiffening, show_weft},
     row::{choose, line, slide},
 };
@@ -18,50 +20,28 @@ use crate::{
     contact::NarrowPhase,
     hierarchy::{SearchMethod, SearchReason},
     plugin::{
-        authoring::ClothGravity, bridge::diagnostics::ClothDiagnosticsPlugin,
-        draw::ShowClothGizmos, state::ClothStats,
+        authoring::ClothGravity,
+        bridge::diagnostics::ClothDiagnosticsPlugin,
+        draw::ShowClothGizmos,
+        state::{ClothBuilt, ClothSearch, ClothStats},
     },
     solver::{ClothSettings, Substepping, TimeOrder},
 };
 
-/// Means of the last second or so, of all cloths together (ms).
-pub(super) struct Times {
-    integrate: f64,
-    rebuild: f64,
-    query: f64,
-}
-
-impl Times {
-    pub fn of(diagnostics: &DiagnosticsStore) -> Self {
-        type Plugin = ClothDiagnosticsPlugin;
-        let mean = |path: &DiagnosticPath| {
-            diagnostics
-                .get(path)
-                .and_then(Diagnostic::smoothed)
-                .unwrap_or(0.0)
-        };
-        Self {
-            integrate: mean(&Plugin::INTEGRATE),
-            rebuild: mean(&Plugin::REBUILD),
-            query: mean(&Plugin::QUERY),
-        }
-    }
-
-    pub fn total(&self) -> f64 {
-        self.integrate + self.rebuild + self.query
-    }
-
-    pub fn explain(&self) -> String {
-        let Self {
-            integrate,
-            rebuild,
-            query,
-        } = self;
-        format!(
-            "Time of a fixed tick for all cloths together, a mean of the last ticks:\n\
-             solver {integrate:.3} ms, refit of the volumes {rebuild:.4} ms, search {query:.4} ms."
-        )
-    }
+/// Means of the last second or so, of all cloths together: their sum, and a text that explains it.
+pub(super) fn times(diagnostics: &DiagnosticsStore) -> (String, String) {
+    type Plugin = ClothDiagnosticsPlugin;
+    let mean = |path| diagnostics.get(&path).and_then(Diagnostic::smoothed);
+    let means = [Plugin::INTEGRATE, Plugin::REBUILD, Plugin::QUERY].map(mean);
+    let [integrate, rebuild, query] = means.map(Option::unwrap_or_default);
+    let tip = format!(
+        "Time of a fixed tick for all cloths together, a mean of the last ticks:\n\
+         solver {integrate:.3} ms, refit of the volumes {rebuild:.4} ms, search {query:.4} ms.\n"
+    );
+    (
+        format!("{:7.3} ms a tick", integrate + rebuild + query),
+        tip,
+    )
 }
 
 /// The folded rows of one cloth. `gravity` is that of all cloths.
@@ -306,16 +286,13 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
         "material, exact",
         "The values behind the sliders above. Double-click a number to edit it",
     );
-    let tip = "Mass per area (kg/m²)";
-    slide(
-        ui,
-        "mass, kg/m²",
-        tip,
-        &mut material.areal_density,
-        0.01..=5.0,
-        |slider| slider.logarithmic(true),
-    );
     for (value, range, name, tip) in [
+        (
+            &mut material.areal_density,
+            0.01..=5.0,
+            "mass, kg/m²",
+            "Mass per area (kg/m²)",
+        ),
         (
             &mut material.stretch_compliance,
             0.0..=10.0,
@@ -342,31 +319,55 @@ fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
     }
     show_weft(ui, material);
     show_stiffening(ui, material);
-    let tip = "Damping along springs (s): time in which a free stretch decays. 0 is none";
-    slide(
-        ui,
-        "loss, s",
-        tip,
-        &mut material.stretch_damping,
-        0.0..=0.1,
-        |slider| slider,
-    );
-    let tip = "Share of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
-    slide(
-        ui,
-        "damping D",
-        tip,
-        &mut material.damping,
-        0.0..=0.2,
-        |slider| slider,
-    );
-    let tip = "Coulomb's coefficient of friction against colliders (no unit)";
-    slide(
-        ui,
-        "friction μ",
-        tip,
-        &mut material.friction,
-        0.0..=2.0,
-        |slider| slider,
-    );
+    for (value, most, name, tip) in [
+        (
+            &mut material.stretch_damping,
+            0.1,
+            "loss, s",
+            "Damping along springs (s): time in which a free stretch decays. 0 is none",
+        ),
+        (
+            &mut material.damping,
+            0.2,
+            "damping D",
+            "Share of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1",
+        ),
+        (
+            &mut material.friction,
+            2.0,
+            "friction μ",
+            "Coulomb's coefficient of friction against colliders (no unit)",
+        ),
+    ] {
+        slide(ui, name, tip, value, 0.0..=most, |slider| slider);
+    }
+}
+
+/// A cloth with everything that the panel shows and sets.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct PanelCloth {
+    pub entity: Entity,
+    name: Option<&'static Name>,
+    pub settings: &'static mut ClothSettings,
+    pub material: &'static mut ClothMaterial,
+    pub search_method: &'static mut SearchMethod,
+    pub narrow_phase: &'static mut NarrowPhase,
+    pub show: Option<&'static mut ShowClothGizmos>,
+    pub built: &'static ClothBuilt,
+    pub search: &'static ClothSearch,
+    pub stats: &'static ClothStats,
+}
+
+/// Number of letters of a cloth's name that fit.
+const LONGEST_NAME: usize = 36;
+
+impl PanelClothItem<'_, '_> {
+    pub fn name(&self) -> String {
+        let name = self
+            .name
+            .map_or_else(|| format!("cloth {}", self.entity), ToString::to_string);
+        // A header is not cut off by itself.
+        name.chars().take(LONGEST_NAME).collect()
+    }
 }

@@ -1,7 +1,6 @@
 //! An egui panel at the window's left edge: the properties of the fabric on top, the simulation's settings folded
 //! below.
 
-mod cloth;
 mod debugging;
 mod fabric;
 mod quality;
@@ -33,8 +32,7 @@ use bevy_egui::{
 };
 
 use crate::{cloth::ClothMaterial, plugin::authoring::ClothGravity};
-use cloth::PanelCloth;
-use debugging::Times;
+use debugging::PanelCloth;
 use quality::Quality;
 use row::{choose, line, slide};
 
@@ -278,13 +276,8 @@ impl Shown<'_, '_> {
                 self.fixed.accumulate_overstep(timestep);
             }
         });
-        let times = self.diagnostics.as_deref().map(Times::of);
-        let (time, mut tip) = times.map_or_else(Default::default, |times| {
-            (
-                format!("{:7.3} ms a tick", times.total()),
-                times.explain() + "\n",
-            )
-        });
+        let times = self.diagnostics.as_deref().map(debugging::times);
+        let (time, mut tip) = times.unwrap_or_default();
         let (mut cloths, mut asleep) = (0, 0);
         let mut limits = Vec::new();
         for cloth in &self.cloths {
@@ -370,15 +363,10 @@ fn draw_fabric(ui: &mut Ui, material: &mut impl DetectChangesMut<Inner = ClothMa
     );
     for quality in Quality::ALL {
         let mut place = quality.of(&changed);
-        let tip = quality.explain(&changed);
-        if slide(
-            ui,
-            quality.name(),
-            &tip,
-            &mut place,
-            0.0..=100.0,
-            |slider| slider.fixed_decimals(0).suffix(" %"),
-        ) {
+        let (name, tip) = (quality.name(), quality.explain(&changed));
+        if slide(ui, name, &tip, &mut place, 0.0..=100.0, |slider| {
+            slider.fixed_decimals(0).suffix(" %")
+        }) {
             quality.set(&mut changed, place);
         }
     }

@@ -45,15 +45,11 @@ impl Quality {
             let changed = each.iter().filter(|difference| **difference > 0.0).count();
             (changed, each.iter().sum::<f32>())
         };
-        let mut nearest = ClothMaterial::PRESETS[0];
-        let mut least = differences(&nearest.1);
-        for preset in &ClothMaterial::PRESETS[1..] {
-            let found = differences(&preset.1);
-            if found < least {
-                (nearest, least) = (*preset, found);
-            }
-        }
-        nearest
+        let found = ClothMaterial::PRESETS.map(|preset| (differences(&preset.1), preset));
+        let nearest = found
+            .into_iter()
+            .reduce(|a, b| if b.0 < a.0 { b } else { a });
+        nearest.map_or(ClothMaterial::PRESETS[0], |(_, preset)| preset)
     }
 
     /// Value of a material on the scale; below 0 or above 100 if it is beyond.

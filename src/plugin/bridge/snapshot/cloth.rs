@@ -1,8 +1,8 @@
 //! The snapshot of a single cloth.
 
 use bevy::ecs::{
-    change_detection::{DetectChanges, DetectChangesMut},
-    entity::{Entity, EntityMapper, MapEntities},
+    change_detection::{DetectChanges, DetectChangesMut, Ref},
+    entity::{Entity, MapEntities},
     world::World,
 };
 
@@ -34,13 +34,15 @@ use crate::{
 ///     kept[kept.len() - 10].restore(world, cloth)
 /// }
 /// ```
-#[derive(Debug, Clone)]
+#[derive(MapEntities, Debug, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothSnapshot {
     pub(super) version: u32,
     particles: ClothParticles,
     frame: ClothFrame,
+    #[entities]
     state: ClothState,
+    #[entities]
     contacts: ClothContacts,
     tears: ClothTears,
     /// Contact with itself alone.
@@ -84,17 +86,17 @@ impl ClothSnapshot {
     /// # Errors
     /// [`SnapshotError::NoCloth`]; the snapshot stays as it was.
     pub fn take(&mut self, world: &World, cloth: Entity) -> Result<(), SnapshotError> {
-        let parts = || {
-            Some((
-                world.get_entity(cloth).ok()?.get_ref::<ClothParticles>()?,
-                world.get::<ClothFrame>(cloth)?,
-                world.get::<ClothState>(cloth)?,
-                world.get::<ClothContacts>(cloth)?,
-                world.get::<ClothScratch>(cloth)?,
-            ))
-        };
+        type Parts = (
+            Ref<'static, ClothParticles>,
+            &'static ClothFrame,
+            &'static ClothState,
+            &'static ClothContacts,
+            &'static ClothScratch,
+        );
+        let entity = world.get_entity(cloth).ok();
+        let parts = entity.and_then(|entity| entity.get_components::<Parts>().ok());
         let (particles, frame, state, contacts, scratch) =
-            parts().ok_or(SnapshotError::NoCloth { entity: cloth })?;
+            parts.ok_or(SnapshotError::NoCloth { entity: cloth })?;
         self.version = Self::VERSION;
         self.particles.copy_from(&particles);
         self.frame = *frame;
@@ -130,13 +132,12 @@ impl ClothSnapshot {
         if !is_valid {
             return Err(SnapshotError::Damaged { entity: cloth });
         }
-        let is_known =
-            world.get::<Cloth>(cloth).is_some() && world.get::<ClothState>(cloth).is_some();
-        if is_known {
-            Ok(())
-        } else {
-            Err(SnapshotError::NoCloth { entity: cloth })
-        }
+        let known = world
+            .get::<Cloth>(cloth)
+            .and(world.get::<ClothState>(cloth));
+        known
+            .map(drop)
+            .ok_or(SnapshotError::NoCloth { entity: cloth })
     }
 
     /// Puts a cloth back to this state. The cloth may never have been simulated, as in an app that has just started,
@@ -158,49 +159,42 @@ impl ClothSnapshot {
                 entity.insert(self.tears.clone());
             }
         }
+        type Parts = (
+            &'static mut ClothParticles,
+            &'static mut ClothFrame,
+            &'static mut ClothContacts,
+            &'static mut ClothState,
+            &'static mut ClothStats,
+            &'static mut ClothScratch,
+            &'static mut ClothBuilt,
+        );
         let wanted = entity.get::<ClothAttachments>().cloned();
-        let last_written = entity
-            .get::<ClothState>()
-            .and_then(|state| state.inputs.written);
-        let mut weighs_the_same = false;
-        if let Some(mut particles) = entity.get_mut::<ClothParticles>() {
-            // Particles that the game has written have not been weighed yet.
-            let is_weighed = last_written == Some(particles.last_changed());
-            weighs_the_same = is_weighed && particles.weigh_as(&self.particles);
-            particles.copy_from(&self.particles);
+        let parts = entity.get_components_mut::<Parts>();
+        let (mut particles, mut frame, mut contacts, mut state, mut stats, mut scratch, mut built) =
+            parts.map_err(|_| SnapshotError::NoCloth { entity: cloth })?;
+        // Particles that the game has written have not been weighed yet.
+        let is_weighed = state.inputs.written == Some(particles.last_changed());
+        let weighs_the_same = is_weighed && particles.weigh_as(&self.particles);
+        particles.copy_from(&self.particles);
+        *frame = self.frame;
+        contacts.clone_from(&self.contacts);
+        state.copy_from(&self.state);
+        state.inputs.written = Some(particles.last_changed()).filter(|_| !self.is_written);
+        // In a file that was edited by hand, they may be anything.
+        let survey = self.particles.survey();
+        state.is_valid &= survey.is_valid;
+        state.largest_speed = survey.largest_speed;
+        // Attachments are not written to files: they are the game's components.
+        let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
+        let attachments = &mut state.attachments;
+        if attachments.given.is_empty() && attachments.targets.len() == wanted.len() {
+            attachments.given.extend_from_slice(wanted);
         }
-        let written = entity
-            .get_ref::<ClothParticles>()
-            .map(|of| of.last_changed());
-        if let Some(mut frame) = entity.get_mut::<ClothFrame>() {
-            *frame = self.frame;
-        }
-        if let Some(mut contacts) = entity.get_mut::<ClothContacts>() {
-            contacts.clone_from(&self.contacts);
-        }
-        if let Some(mut state) = entity.get_mut::<ClothState>() {
-            state.copy_from(&self.state);
-            state.inputs.written = written.filter(|_| !self.is_written);
-            // In a file that was edited by hand, they may be anything.
-            let survey = self.particles.survey();
-            state.is_valid &= survey.is_valid;
-            state.largest_speed = survey.largest_speed;
-            // Attachments are not written to files: they are the game's components.
-            let wanted = wanted.as_ref().map_or(&[][..], ClothAttachments::as_slice);
-            if state.attachments.given.is_empty() && state.attachments.targets.len() == wanted.len()
-            {
-                state.attachments.given.extend_from_slice(wanted);
-            }
-            state.resumes = true;
-        }
-        if let Some(mut stats) = entity.get_mut::<ClothStats>() {
-            stats.is_asleep = self.state.rest.is_asleep();
-        }
-        if let Some(mut scratch) = entity.get_mut::<ClothScratch>() {
-            scratch.forget_tick();
-            scratch.mutual.clone_from(&self.mutual);
-        }
-        if !weighs_the_same && let Some(mut built) = entity.get_mut::<ClothBuilt>() {
+        state.resumes = true;
+        stats.is_asleep = self.state.rest.is_asleep();
+        scratch.forget_tick();
+        scratch.mutual.clone_from(&self.mutual);
+        if !weighs_the_same {
             built.refresh_masses(&self.particles);
         }
         Ok(())
@@ -209,12 +203,5 @@ impl ClothSnapshot {
     /// The particles in the snapshot.
     pub fn particles(&self) -> &ClothParticles {
         &self.particles
-    }
-}
-
-impl MapEntities for ClothSnapshot {
-    fn map_entities<M: EntityMapper>(&mut self, mapper: &mut M) {
-        self.state.map_entities(mapper);
-        self.contacts.map_entities(mapper);
     }
 }

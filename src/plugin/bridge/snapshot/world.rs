@@ -122,11 +122,8 @@ impl ClothWorldSnapshot {
         self.take_seams(world);
         let islands = world.get_resource::<Islands>();
         self.islands.clear();
-        (self.islands).extend(
-            islands
-                .into_iter()
-                .flat_map(|islands| islands.all.iter().cloned()),
-        );
+        let all = islands.into_iter().flat_map(|islands| &islands.all);
+        self.islands.extend(all.cloned());
         let field = world.get_resource::<WindField>();
         self.wind = field.map_or_else(Default::default, WindField::memory);
         let mut zones = world.query_filtered::<Entity, With<ClothWindZone>>();
@@ -186,9 +183,8 @@ impl ClothWorldSnapshot {
         for (entity, snapshot) in &self.cloths {
             snapshot.check(world, *entity)?;
         }
-        let colliders = self.colliders.iter().map(|(entity, _)| *entity);
-        for entity in colliders {
-            has::<ColliderMotion>(world, entity, "ClothCollider")?;
+        for (entity, _) in &self.colliders {
+            has::<ColliderMotion>(world, *entity, "ClothCollider")?;
         }
         for (entity, _) in &self.roots {
             has::<RootMotion>(world, *entity, "ClothInertia")?;

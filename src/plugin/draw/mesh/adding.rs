@@ -13,13 +13,13 @@ use bevy::{
 
 use super::{
     drawing::MeshDrawing,
-    write::{Tangents, TornVertices, copy_of, mesh_of},
+    write::{Tangents, copy_of, mesh_of},
 };
 use crate::{
     cloth::{Cloth, ClothShape},
     plugin::{
         authoring::{ClothMesh, ClothSkeleton},
-        state::{ClothBuilt, Notice, Notices},
+        state::{ClothBuilt, Notices},
     },
 };
 
@@ -70,8 +70,7 @@ pub(super) fn add_meshes(
         };
         // A scene or a clone brings a mesh of the plugin's along.
         if drawn.is_none() && !is_asset && other.is_some_and(|mesh| !is_own(mesh)) {
-            let text = replacing(cloth);
-            notices.add(entity, Notice::ReplacesMesh, text);
+            notices.add(entity, replacing(cloth));
         }
         let replaced = other.map(|mesh| mesh.0.clone()).or(known);
         let source = replaced.clone().filter(|_| is_asset);
@@ -79,8 +78,7 @@ pub(super) fn add_meshes(
         let copy = source
             .as_ref()
             .and_then(|source| copy_of(meshes.get(source)?, surface));
-        let (copy, vertices) =
-            copy.unwrap_or_else(|| (mesh_of(surface), TornVertices::of_particles(surface)));
+        let (copy, vertices) = copy.unwrap_or_else(|| mesh_of(surface));
         let tangents = Tangents::of(&copy);
         let handle = meshes.add(copy);
         let drawn = ClothMesh {

@@ -12,7 +12,8 @@ use super::{
     blend::Blend,
     placing::Carriers,
     skin::DrawnPose,
-    write::{Tangents, TornVertices, write_mesh},
+    tube,
+    write::{Tangents, TornVertices, Vectors},
 };
 use crate::{
     cloth::Surface,
@@ -39,7 +40,7 @@ pub(crate) struct MeshDrawing {
     /// Whether those were remembered from a cloth that slept.
     pub(super) rested: bool,
     /// Positions to be drawn, in the entity's frame.
-    pub(super) drawn: Vec<Vec3>,
+    pub(in crate::plugin::draw) drawn: Vec<Vec3>,
     pub(super) normals: Vec<Vec3>,
     /// The picture of a cloth that sleeps or is frozen: when its particles were written, the place of its entity or of
     /// the frozen particles relative to it, and whether it is visible.
@@ -49,10 +50,10 @@ pub(crate) struct MeshDrawing {
     pub(super) blend: Blend,
     /// Place of the particles relative to the entity that they are frozen to.
     pub(super) frozen: Option<Affine3A>,
-    /// Whether it drives other meshes, in this frame.
-    pub(super) drives: bool,
+    /// Whether it drives other meshes, in this frame: its drawn positions are needed then, even if it is hidden.
+    pub(in crate::plugin::draw) drives: bool,
     /// Changes whenever it is drawn elsewhere.
-    pub(super) version: u32,
+    pub(in crate::plugin::draw) version: u32,
 }
 
 impl MeshDrawing {
@@ -64,22 +65,26 @@ impl MeshDrawing {
         self.version = old.version.wrapping_add(1);
     }
 
-    /// Writes what is drawn into the mesh.
+    /// Writes the drawn positions of the particles into the mesh, with normals and, if it has them, tangents. Vertices
+    /// without a particle stay where they are.
     pub(super) fn write(&mut self, mesh: &mut Mesh) {
-        let Self {
-            surface,
-            vertices,
-            drawn,
-            normals,
-            tangents,
-            ..
-        } = self;
-        write_mesh(mesh, surface, vertices, drawn, normals, tangents);
-    }
-
-    /// In this frame the cloth drives another mesh, so its drawn positions are needed even if it is hidden.
-    pub(crate) fn drive(&mut self) {
-        self.drives = true;
+        let surface = &self.surface;
+        if let Some(radius) = tube::radius_of(surface) {
+            return tube::write(mesh, &self.drawn, radius);
+        }
+        surface.normals_at(&self.drawn, &mut self.normals);
+        let mut vectors = Vectors::of(mesh);
+        for (values, of_particles) in [
+            (&mut vectors.positions, &self.drawn),
+            (&mut vectors.normals, &self.normals),
+        ] {
+            for (vertex, value) in values.iter_mut().flat_map(|all| all.iter_mut()).enumerate() {
+                if let Some(particle) = self.vertices.particle_of(surface, vertex) {
+                    *value = of_particles[particle].to_array();
+                }
+            }
+        }
+        self.tangents.write(vectors);
     }
 
     /// Shifts it with the world's origin, from one frame to another; `target` gives the current place of a target.
@@ -96,10 +101,5 @@ impl MeshDrawing {
     /// Whether it is drawn as this surface.
     pub(crate) fn is_of(&self, surface: &Arc<Surface>) -> bool {
         Arc::ptr_eq(&self.surface, surface)
-    }
-
-    /// Drawn positions of the particles, in the entity's frame, and a number that changes whenever they do.
-    pub(crate) fn drawn(&self) -> (u32, &[Vec3]) {
-        (self.version, &self.drawn)
     }
 }

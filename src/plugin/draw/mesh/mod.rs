@@ -37,7 +37,7 @@ use crate::{
         authoring::{ClothLodLevel, ClothMesh, ClothSkeleton},
         frame::{ClothFrame, rigid},
         prepare::Skins,
-        sets::ClothSystems,
+        sets::{ClothSystems, runs_in_schedule},
         state::{ClothBuilt, ClothScratch, ClothState, LodAction, Notices},
     },
 };
@@ -45,7 +45,7 @@ use adding::{add_meshes, remove_mesh};
 use placing::Drawn;
 
 pub(crate) use drawing::MeshDrawing;
-pub(super) use write::with_triangles;
+pub(super) use write::{Vectors, with_triangles};
 
 /// The steps for the meshes in a frame.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -63,19 +63,9 @@ pub struct ClothMeshPlugin {
     schedule: Interned<dyn ScheduleLabel>,
 }
 
-impl Default for ClothMeshPlugin {
-    fn default() -> Self {
-        Self::new(FixedUpdate)
-    }
-}
-
-impl ClothMeshPlugin {
+runs_in_schedule! {
     /// For a [`ClothPlugin`](crate::plugin::ClothPlugin) in `schedule`.
-    pub fn new(schedule: impl ScheduleLabel) -> Self {
-        Self {
-            schedule: schedule.intern(),
-        }
-    }
+    ClothMeshPlugin
 }
 
 impl Plugin for ClothMeshPlugin {

@@ -73,14 +73,11 @@ impl Carriers {
     pub fn shift(
         &mut self,
         shift: Shift,
-        [before, after]: [ClothFrame; 2],
+        frames: [ClothFrame; 2],
         target: impl Fn(Entity) -> Option<Affine3A>,
     ) {
         for places in [&mut self.before, &mut self.now] {
-            places.frame = match places.frame == before {
-                true => after,
-                false => places.frame.shifted(shift, None),
-            };
+            places.frame = places.frame.shifted_with(shift, frames);
             for (entity, place) in &mut places.targets {
                 *place = shift.affine(*place, target(*entity));
             }

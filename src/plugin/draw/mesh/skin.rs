@@ -48,11 +48,8 @@ impl DrawnPose {
     }
 
     /// Shifts it with the world's origin, from one frame to another.
-    pub fn shift(&mut self, shift: Shift, [before, after]: [ClothFrame; 2]) {
-        self.frame = match self.frame == before {
-            true => after,
-            false => self.frame.shifted(shift, None),
-        };
+    pub fn shift(&mut self, shift: Shift, frames: [ClothFrame; 2]) {
+        self.frame = self.frame.shifted_with(shift, frames);
     }
 
     /// Reads the drawn joints. Returns whether they have moved since they were last drawn.

@@ -3,7 +3,7 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::{Vec2, Vec3},
-    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Indices, Mesh, MeshVertexAttributeId, PrimitiveTopology, VertexAttributeValues},
     platform::collections::HashMap,
 };
 
@@ -12,29 +12,24 @@ use crate::cloth::{Surface, TriangleMesh};
 
 /// A mesh of a surface at rest, with the vertices that it was made from, and texture coordinates and tangents where it has
 /// them.
-pub(super) fn mesh_of(surface: &Surface) -> Mesh {
+pub(super) fn mesh_of(surface: &Surface) -> (Mesh, TornVertices) {
+    let vertices = TornVertices::of_particles(surface);
     if tube::radius_of(surface).is_some() {
-        return tube::mesh_of(surface);
+        return (tube::mesh_of(surface), vertices);
     }
-    let (count, particle_of) = vertices_of(surface);
-    // A vertex without a particle belongs to no triangle.
-    let place = |vertex: usize| {
-        particle_of(vertex).map_or(Vec3::ZERO, |particle| surface.rest_positions()[particle])
-    };
-    let normal =
-        |vertex: usize| particle_of(vertex).map_or(Vec3::Y, |particle| surface.normal_of(particle));
+    let count = vertices.len(surface);
+    let particles = (0..count).map(|vertex| vertices.particle_of(surface, vertex));
     let mut vertex_of = vec![0; surface.len()];
-    for vertex in (0..count).rev() {
-        if let Some(particle) = particle_of(vertex) {
+    for (vertex, particle) in particles.clone().enumerate().rev() {
+        if let Some(particle) = particle {
             vertex_of[particle] = vertex as u32;
         }
     }
-    let vertices = 0..count;
-    let positions: Vec<_> = vertices
-        .clone()
-        .map(|vertex| place(vertex).to_array())
-        .collect();
-    let normals: Vec<_> = vertices.map(|vertex| normal(vertex).to_array()).collect();
+    // A vertex without a particle belongs to no triangle.
+    let place = |of: Option<usize>| of.map_or(Vec3::ZERO, |of| surface.rest_positions()[of]);
+    let normal = |of: Option<usize>| of.map_or(Vec3::Y, |of| surface.normal_of(of));
+    let positions: Vec<_> = particles.clone().map(|of| place(of).to_array()).collect();
+    let normals: Vec<_> = particles.map(|of| normal(of).to_array()).collect();
     let corners = surface.triangles().iter().flatten();
     let indices = corners.map(|corner| vertex_of[*corner as usize]).collect();
     let mut mesh = Mesh::new(
@@ -51,23 +46,7 @@ pub(super) fn mesh_of(surface: &Surface) -> Mesh {
         mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs);
         mesh.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
     }
-    mesh
-}
-
-/// The vertices of a mesh without an asset, and the particle of each. Where the surface is torn, each particle has a vertex of
-/// its own.
-fn vertices_of(surface: &Surface) -> (usize, impl Fn(usize) -> Option<usize> + '_) {
-    let is_torn = surface.is_torn();
-    let count = if is_torn {
-        surface.len()
-    } else {
-        surface.vertices()
-    };
-    let particle_of = move |vertex: usize| match is_torn {
-        true => Some(vertex),
-        false => surface.particle_of_vertex(vertex),
-    };
-    (count, particle_of)
+    (mesh, vertices)
 }
 
 /// The particle of each vertex of the mesh of a torn surface, in place of the surface's own.
@@ -75,14 +54,14 @@ fn vertices_of(surface: &Surface) -> (usize, impl Fn(usize) -> Option<usize> + '
 pub(super) struct TornVertices(Vec<u32>);
 
 impl TornVertices {
-    /// Those of [`mesh_of`].
-    pub fn of_particles(surface: &Surface) -> Self {
+    /// Each particle has a vertex of its own.
+    fn of_particles(surface: &Surface) -> Self {
         let count = if surface.is_torn() { surface.len() } else { 0 };
         Self((0..count as u32).collect())
     }
 
     /// The particle of a vertex.
-    fn particle_of(&self, surface: &Surface, vertex: usize) -> Option<usize> {
+    pub fn particle_of(&self, surface: &Surface, vertex: usize) -> Option<usize> {
         if self.0.is_empty() {
             return surface.particle_of_vertex(vertex);
         }
@@ -191,6 +170,33 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVert
     Some((mesh, vertices))
 }
 
+/// The vectors of a mesh that follow a cloth, those that it has.
+#[derive(Default)]
+pub(in crate::plugin::draw) struct Vectors<'a> {
+    pub positions: Option<&'a mut Vec<[f32; 3]>>,
+    pub normals: Option<&'a mut Vec<[f32; 3]>>,
+    pub tangents: Option<&'a mut Vec<[f32; 4]>>,
+}
+
+impl<'a> Vectors<'a> {
+    pub fn of(mesh: &'a mut Mesh) -> Self {
+        let mut vectors = Self::default();
+        for (attribute, values) in mesh.try_attributes_mut().into_iter().flatten() {
+            match (attribute.id, values) {
+                (POSITION, VertexAttributeValues::Float32x3(of)) => vectors.positions = Some(of),
+                (NORMAL, VertexAttributeValues::Float32x3(of)) => vectors.normals = Some(of),
+                (TANGENT, VertexAttributeValues::Float32x4(of)) => vectors.tangents = Some(of),
+                _ => {}
+            }
+        }
+        vectors
+    }
+}
+
+const POSITION: MeshVertexAttributeId = Mesh::ATTRIBUTE_POSITION.id;
+const NORMAL: MeshVertexAttributeId = Mesh::ATTRIBUTE_NORMAL.id;
+const TANGENT: MeshVertexAttributeId = Mesh::ATTRIBUTE_TANGENT.id;
+
 /// How the tangents of a mesh follow its vertices: by the texture coordinates of its triangles.
 #[derive(Debug, Default)]
 pub(super) struct Tangents {
@@ -227,14 +233,17 @@ impl Tangents {
         }
     }
 
-    fn write(&mut self, mesh: &mut Mesh) {
+    /// Writes the tangents, if there are any.
+    pub fn write(&mut self, vectors: Vectors) {
         let Self {
             triangles,
             parts,
             sums,
         } = self;
-        if let Ok(VertexAttributeValues::Float32x3(places)) =
-            mesh.try_attribute(Mesh::ATTRIBUTE_POSITION)
+        if triangles.is_empty() {
+            return;
+        }
+        if let Some(places) = vectors.positions
             && places.len() == sums.len()
         {
             sums.fill(Vec3::ZERO);
@@ -246,63 +255,15 @@ impl Tangents {
                     .for_each(|corner| sums[*corner as usize] += along);
             }
         }
-        let mut normals: Option<&mut [[f32; 3]]> = None;
-        let mut tangents: Option<&mut [[f32; 4]]> = None;
-        for (attribute, values) in mesh.attributes_mut() {
-            match values {
-                VertexAttributeValues::Float32x3(values)
-                    if attribute.id == Mesh::ATTRIBUTE_NORMAL.id =>
-                {
-                    normals = Some(values);
-                }
-                VertexAttributeValues::Float32x4(values)
-                    if attribute.id == Mesh::ATTRIBUTE_TANGENT.id =>
-                {
-                    tangents = Some(values);
-                }
-                _ => {}
-            }
-        }
-        let (Some(normals), Some(tangents)) = (normals, tangents) else {
+        let (Some(normals), Some(tangents)) = (vectors.normals, vectors.tangents) else {
             return;
         };
-        for ((tangent, normal), along) in tangents.iter_mut().zip(normals).zip(sums) {
+        for ((tangent, normal), along) in tangents.iter_mut().zip(&*normals).zip(sums) {
             let normal = Vec3::from(*normal);
             let across = along.reject_from_normalized(normal);
             let direction = across.normalize_or(normal.any_orthonormal_vector());
             // The sign of the bitangent does not change.
             [tangent[0], tangent[1], tangent[2]] = direction.to_array();
         }
-    }
-}
-
-/// Writes the drawn positions of the particles into a mesh, with normals and, if it has them, tangents. Vertices
-/// without a particle stay where they are.
-pub(super) fn write_mesh(
-    mesh: &mut Mesh,
-    surface: &Surface,
-    vertices: &TornVertices,
-    drawn: &[Vec3],
-    normals: &mut Vec<Vec3>,
-    tangents: &mut Tangents,
-) {
-    if let Some(radius) = tube::radius_of(surface) {
-        return tube::write(mesh, drawn, radius);
-    }
-    surface.normals_at(drawn, normals);
-    for (attribute, of_particles) in [
-        (Mesh::ATTRIBUTE_POSITION, drawn),
-        (Mesh::ATTRIBUTE_NORMAL, normals),
-    ] {
-        if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
-            for (vertex, value) in values.iter_mut().enumerate() {
-                if let Some(particle) = vertices.particle_of(surface, vertex) {
-                    *value = of_particles[particle].to_array();
-                }
-            }
-        }
-    }
-    if !tangents.triangles.is_empty() {
-        tangents.write(mesh);
     }
 }

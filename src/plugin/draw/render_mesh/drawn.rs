@@ -10,7 +10,7 @@ use bevy::{
 use crate::{
     cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh},
     plugin::{
-        draw::mesh::{MeshDrawing, with_triangles},
+        draw::mesh::{MeshDrawing, Vectors, with_triangles},
         frame::{rigid, unusable},
     },
 };
@@ -100,7 +100,7 @@ impl Driven {
         place: &GlobalTransform,
         at: &GlobalTransform,
     ) -> bool {
-        let (version, drawn) = cloth.drawn();
+        let (version, drawn) = (cloth.version, &cloth.drawn);
         let own = Affine3A::from(rigid(&place.affine()));
         let from_cloth = own.inverse() * at.affine();
         let scale = own.inverse() * place.affine();
@@ -125,25 +125,12 @@ impl Driven {
 
     /// Writes the vertices into a mesh.
     pub fn write(&self, mesh: &mut Mesh) {
-        let [mut positions, mut normals] = [const { None }; 2];
-        let mut tangents = None;
-        for (attribute, values) in mesh.attributes_mut() {
-            let id = attribute.id;
-            match values {
-                VertexAttributeValues::Float32x3(values) => {
-                    if id == Mesh::ATTRIBUTE_POSITION.id {
-                        positions = Some(values);
-                    } else if id == Mesh::ATTRIBUTE_NORMAL.id {
-                        normals = Some(values);
-                    }
-                }
-                VertexAttributeValues::Float32x4(values) if id == Mesh::ATTRIBUTE_TANGENT.id => {
-                    tangents = Some(values);
-                }
-                _ => {}
-            }
-        }
-        let (Some(positions), Some(normals)) = (positions, normals) else {
+        let Vectors {
+            positions: Some(positions),
+            normals: Some(normals),
+            tangents,
+        } = Vectors::of(mesh)
+        else {
             return;
         };
         let tangents = tangents.map_or(&mut [][..], |tangents| &mut tangents[..]);

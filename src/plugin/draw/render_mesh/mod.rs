@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use bevy::{
     app::{App, Plugin, PostUpdate},
-    asset::{AssetEvent, AssetEventSystems, AssetId, AssetServer, Assets, Handle, LoadState},
+    asset::{AssetEvent, AssetEventSystems, AssetId, AssetServer, Assets, Handle},
     camera::visibility::InheritedVisibility,
     ecs::{
         component::Component,
@@ -30,6 +30,7 @@ use crate::{
     cloth::{Cloth, ClothError, MeshError, Surface, TargetError},
     plugin::{
         naming::Part,
+        prepare::not_there,
         state::{ClothBuilt, ClothFault},
     },
 };
@@ -197,7 +198,7 @@ fn bind(
                 if surface.is_empty() {
                     continue;
                 }
-                driving.drawing.drive();
+                driving.drawing.drives = true;
                 let is_bound = each.state.is_some_and(|state| {
                     let bound = state.bound.as_ref();
                     bound.is_some_and(|to| to.cloth == cloth && Arc::ptr_eq(&to.surface, &surface))
@@ -222,11 +223,6 @@ fn bind(
             _ if cloths.contains(cloth) => continue,
             _ => Err(TargetError::NoSuchCloth { cloth }.into()),
         };
-        // A mesh that is being loaded is no fault.
-        let outcome = match outcome {
-            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
-            outcome => outcome,
-        };
         let part = Part::RenderMesh;
         ClothFault::report(&mut commands, each.entity, each.fault, part, outcome);
     }
@@ -248,15 +244,7 @@ impl BindingItem<'_, '_> {
         let source = other.or(self.state.map(|state| &state.source));
         let source = source.ok_or(MeshError::NotLoaded)?.clone();
         let Some(asset) = meshes.get(&source) else {
-            return Err(
-                match server.and_then(|server| server.get_load_state(&source)) {
-                    Some(LoadState::Failed(error)) => ClothError::Mesh(MeshError::Failed {
-                        reason: error.to_string(),
-                    }),
-                    Some(LoadState::Loading) => ClothError::Mesh(MeshError::Loading),
-                    _ => ClothError::Mesh(MeshError::NotLoaded),
-                },
-            );
+            return Err(not_there(server, source.id()).into());
         };
         let place = self.place.copied().unwrap_or_default();
         let cloth = driving.place.copied().unwrap_or_default();

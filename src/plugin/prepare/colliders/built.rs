@@ -7,7 +7,7 @@ use bevy::{
 
 use super::skinned::SkinnedPose;
 use crate::{
-    cloth::{ClothError, FARTHEST, QuantityError},
+    cloth::{Allowed, ClothError, FARTHEST},
     contact::{ClothCollider, ColliderShape},
     plugin::{prepare::source::ColliderMeshes, state::Source},
 };
@@ -31,7 +31,7 @@ impl BuiltShape {
     pub fn rigid(
         known: Option<Self>,
         collider: &ClothCollider,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
         scale: Vec3,
     ) -> Result<Self, ClothError> {
@@ -86,8 +86,6 @@ impl BuiltShape {
 }
 
 fn check_extent(shape: &ColliderShape) -> Result<(), ClothError> {
-    let is_in_reach = |extent: f32| extent <= FARTHEST;
-    let (size, most) = ("the collider's size (m)", "at most 10¹²");
-    QuantityError::check(shape.extent(), is_in_reach, size, most)?;
-    Ok(())
+    let in_reach = Allowed(|extent| extent <= FARTHEST, "at most 10¹²");
+    Ok(in_reach.check("the collider's size (m)", [shape.extent()])?)
 }

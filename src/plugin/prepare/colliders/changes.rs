@@ -62,16 +62,10 @@ pub(crate) struct Removals<'w, 's> {
 /// Notes the components that colliders have lost. It runs in each frame as well as in each tick, because Bevy forgets
 /// removals after two frames, in which there may be no tick.
 pub(crate) fn note_removals(mut removals: Removals, mut changed: ResMut<ChangedColliders>) {
-    let Removals {
-        bodies,
-        parents,
-        places,
-        concerned,
-    } = &mut removals;
-    let removed = bodies.read().chain(parents.read()).chain(places.read());
-    for entity in removed.filter(|entity| concerned.contains(*entity)) {
-        changed.0.push(entity);
-    }
+    let removed = removals.bodies.read().chain(removals.parents.read());
+    let removed = removed.chain(removals.places.read());
+    let is_concerned = |entity: &Entity| removals.concerned.contains(*entity);
+    changed.0.extend(removed.filter(is_concerned));
 }
 
 /// A collider that is enabled again is read, and does not move from its earlier place.

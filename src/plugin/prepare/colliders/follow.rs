@@ -15,7 +15,6 @@ use super::{
     tree::ColliderTree,
 };
 use crate::{
-    cloth::{ClothError, MeshError},
     contact::ClothCollider,
     plugin::{
         authoring::ClothBody,
@@ -41,7 +40,7 @@ pub(crate) fn prepare_colliders(
     mut colliders: Query<Reading>,
     mut tree: ResMut<ColliderTree>,
     places: Places,
-    meshes: ColliderMeshes,
+    mut meshes: ColliderMeshes,
     roots: Roots,
     time: Res<Time>,
     mut commands: Commands,
@@ -56,20 +55,15 @@ pub(crate) fn prepare_colliders(
         if roots.jumps(entity) || joint.is_some_and(|joint| roots.jumps(joint)) {
             motion.stop();
         }
-        let outcome = motion.follow(collider, body, &places, &meshes, entity, time_passes);
+        let outcome = motion.follow(collider, body, &places, &mut meshes, entity, time_passes);
         if outcome.is_err() {
             *motion = ColliderMotion::default();
         }
-        tree.set(entity, motion.held_by());
+        tree.set(entity, motion.bounds);
         // A mesh asset has to be loaded, and may change.
         if motion.is_moving() || matches!(collider, ClothCollider::Mesh(_)) {
             moving.push(entity);
         }
-        // A mesh that is being loaded is no fault.
-        let outcome = match outcome {
-            Err(ClothError::Mesh(MeshError::Loading)) => Ok(()),
-            outcome => outcome,
-        };
         ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);
     }
 }

@@ -22,7 +22,7 @@ use crate::{
 pub(super) struct SkinnedMotion {
     triangles: Option<(Source, Arc<SkinnedTriangles>)>,
     /// Transforms of the joints, from the mesh to the collider's frame: after the last tick in which time passed, and now.
-    last: Vec<Affine3A>,
+    pub last: Vec<Affine3A>,
     now: Vec<Affine3A>,
     known: Vec<DeformingMesh>,
     /// The last mesh, and the joints that it was made of.
@@ -48,7 +48,7 @@ impl SkinnedMotion {
         &mut self,
         collider: &ClothCollider,
         places: &Places,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
     ) -> Result<Option<SkinnedPose>, ClothError> {
         meshes.joints(entity, collider, places, &mut self.now)?;
@@ -108,11 +108,6 @@ impl SkinnedMotion {
         self.last.clear();
     }
 
-    /// The joints from which its next path begins.
-    pub fn memory(&self) -> &Vec<Affine3A> {
-        &self.last
-    }
-
     /// Takes over where its joints are in the world after a jump of its origin. If they stand still but for rounding, so does the
     /// mesh, to the last bit. Returns the place of its frame.
     pub fn shift(&mut self, shift: Shift, joints: &mut [Affine3A]) -> Option<Isometry3d> {
@@ -134,11 +129,6 @@ impl SkinnedMotion {
             self.last.copy_from_slice(joints);
         }
         Some(place)
-    }
-
-    /// Restores these joints.
-    pub fn recall(&mut self, joints: &Vec<Affine3A>) {
-        self.last.clone_from(joints);
     }
 }
 

@@ -25,29 +25,17 @@ use crate::{
 
 /// The number of changes of each mesh since it was loaded; unchanged meshes are not in it.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct ChangedMeshes(HashMap<AssetId<Mesh>, u32>);
+pub(crate) struct ChangedMeshes(pub(super) HashMap<AssetId<Mesh>, u32>);
 
-impl ChangedMeshes {
-    /// A mesh has been changed.
-    pub fn note(&mut self, mesh: AssetId<Mesh>) {
-        *self.0.entry(mesh).or_default() += 1;
+/// The error of a mesh that is not among the assets.
+pub(crate) fn not_there(server: Option<&AssetServer>, id: AssetId<Mesh>) -> MeshError {
+    match server.and_then(|server| server.get_load_state(id)) {
+        Some(LoadState::Failed(error)) => MeshError::Failed {
+            reason: error.to_string(),
+        },
+        Some(LoadState::Loading) => MeshError::Loading,
+        Some(LoadState::NotLoaded | LoadState::Loaded) | None => MeshError::NotLoaded,
     }
-
-    /// The mesh is no longer used.
-    pub fn forget(&mut self, mesh: AssetId<Mesh>) {
-        self.0.remove(&mesh);
-    }
-}
-
-/// The joints and weights of a mesh's vertices.
-///
-/// # Errors
-/// [`SkinError::MissingJoints`] if it names no joints.
-fn skin_of(mesh: &Mesh) -> Result<Vec<JointWeights>, ClothError> {
-    skin_of_asset(mesh)?.ok_or(ClothError::Skin(SkinError::MissingJoints {
-        needed: 1,
-        joints: 0,
-    }))
 }
 
 /// The assets, if the app has any.
@@ -90,11 +78,7 @@ impl Sources<'_, '_> {
     /// # Errors
     /// As for [`find`](Self::find).
     pub fn loaded(&self, id: AssetId<Mesh>, known: Option<Source>) -> Result<Source, ClothError> {
-        if self
-            .meshes
-            .as_ref()
-            .is_some_and(|meshes| meshes.contains(id))
-        {
+        if self.get(id).is_ok() {
             let version = self.changed.as_ref().and_then(|changed| changed.0.get(&id));
             return Ok(Source {
                 mesh: id,
@@ -105,19 +89,12 @@ impl Sources<'_, '_> {
         if let Some(known) = known.filter(|known| known.mesh == id) {
             return Ok(known);
         }
-        match self
-            .server
-            .as_ref()
-            .and_then(|server| server.get_load_state(id))
-        {
-            Some(LoadState::Failed(error)) => Err(ClothError::Mesh(MeshError::Failed {
-                reason: error.to_string(),
-            })),
-            Some(LoadState::Loading) => Err(MeshError::Loading.into()),
-            Some(LoadState::NotLoaded | LoadState::Loaded) | None => {
-                Err(MeshError::NotLoaded.into())
-            }
-        }
+        Err(not_there(self.server.as_deref(), id).into())
+    }
+
+    fn get(&self, id: AssetId<Mesh>) -> Result<&Mesh, MeshError> {
+        let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
+        mesh.ok_or(MeshError::NotLoaded)
     }
 
     /// The triangles of a mesh that has been loaded.
@@ -125,8 +102,18 @@ impl Sources<'_, '_> {
     /// # Errors
     /// The error of the mesh.
     pub fn triangles(&self, id: AssetId<Mesh>) -> Result<TriangleMesh, MeshError> {
-        let mesh = self.meshes.as_ref().and_then(|meshes| meshes.get(id));
-        TriangleMesh::of_asset(mesh.ok_or(MeshError::NotLoaded)?)
+        TriangleMesh::of_asset(self.get(id)?)
+    }
+
+    /// The triangles of a mesh, with the joints and weights of its vertices.
+    ///
+    /// # Errors
+    /// The error of the mesh; [`SkinError::MissingJoints`] if it names no joints.
+    fn with_skin(&self, source: Source) -> Result<(TriangleMesh, Vec<JointWeights>), ClothError> {
+        let (needed, joints) = (1, 0);
+        let skin = skin_of_asset(self.get(source.mesh)?)?;
+        let skin = skin.ok_or(SkinError::MissingJoints { needed, joints })?;
+        Ok((self.triangles(source.mesh)?, skin))
     }
 
     /// The skinning by joints of a surface that was made from that mesh.
@@ -134,12 +121,7 @@ impl Sources<'_, '_> {
     /// # Errors
     /// The error of the mesh; [`SkinError::MissingJoints`] if it names no joints.
     pub fn skinning(&self, source: Source, surface: &Surface) -> Result<Skinning, ClothError> {
-        let mesh = self
-            .meshes
-            .as_ref()
-            .and_then(|meshes| meshes.get(source.mesh));
-        let skin = skin_of(mesh.ok_or(MeshError::NotLoaded)?)?;
-        let mesh = self.triangles(source.mesh)?;
+        let (mesh, skin) = self.with_skin(source)?;
         Ok(Skinning::new(surface, &mesh.positions, &skin)?)
     }
 
@@ -148,12 +130,7 @@ impl Sources<'_, '_> {
     /// # Errors
     /// As for [`skinning`](Self::skinning).
     pub fn skinned(&self, source: Source) -> Result<SkinnedTriangles, ClothError> {
-        let mesh = self
-            .meshes
-            .as_ref()
-            .and_then(|meshes| meshes.get(source.mesh));
-        let skin = skin_of(mesh.ok_or(MeshError::NotLoaded)?)?;
-        let mesh = self.triangles(source.mesh)?;
+        let (mesh, skin) = self.with_skin(source)?;
         SkinnedTriangles::new(&mesh.positions, &mesh.triangles, &skin)
     }
 
@@ -162,9 +139,7 @@ impl Sources<'_, '_> {
     /// # Errors
     /// The error of the mesh.
     pub fn mesh(&self, recipe: &Recipe) -> Result<TriangleMesh, MeshError> {
-        let of = |source: Source| self.triangles(source.mesh);
-        recipe
-            .source
-            .map_or_else(|| Ok(TriangleMesh::default()), of)
+        let mesh = recipe.source.map(|source| self.triangles(source.mesh));
+        mesh.unwrap_or_else(|| Ok(TriangleMesh::default()))
     }
 }

@@ -1,54 +1,51 @@
-//! Colliders that are made from drawn meshes.
+//! Colliders that are made from drawn meshes, and changes of meshes.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use bevy::{
-    asset::AssetId,
+    asset::{AssetEvent, AssetId},
     ecs::{
         entity::Entity,
+        message::MessageReader,
         resource::Resource,
-        system::{Query, Res, SystemParam},
+        system::{Local, Query, ResMut, SystemParam},
     },
     math::Affine3A,
     mesh::{Mesh, Mesh3d},
-    platform::collections::HashMap,
+    platform::collections::{HashMap, HashSet},
 };
 
-use super::{asset::Sources, joints::Skins};
+use super::{
+    asset::{ChangedMeshes, Sources},
+    joints::Skins,
+};
 use crate::{
     cloth::{ClothError, MeshError},
     contact::{ClothCollider, MeshCollider, SkinnedTriangles},
-    plugin::{frame::Places, state::Source},
+    plugin::{
+        frame::Places,
+        state::{ClothBuilt, Source},
+    },
 };
 
 /// The colliders that have been made from meshes, shared by all entities with the same mesh.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct SharedMeshes {
-    rigid: Mutex<HashMap<(Source, MeshCollider), ClothCollider>>,
-    skinned: Mutex<HashMap<Source, Arc<SkinnedTriangles>>>,
+    rigid: HashMap<(Source, MeshCollider), ClothCollider>,
+    skinned: HashMap<Source, Arc<SkinnedTriangles>>,
 }
 
 impl SharedMeshes {
     /// The meshes that colliders have been made from, as long as they are used.
-    pub fn meshes(&mut self) -> impl Iterator<Item = AssetId<Mesh>> {
-        let rigid = self.rigid.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let skinned = self
-            .skinned
-            .get_mut()
-            .unwrap_or_else(PoisonError::into_inner);
-        let rigid = rigid.keys().map(|(source, _)| source.mesh);
-        rigid.chain(skinned.keys().map(|source| source.mesh))
+    pub fn meshes(&self) -> impl Iterator<Item = AssetId<Mesh>> {
+        let rigid = self.rigid.keys().map(|(source, _)| source);
+        rigid.chain(self.skinned.keys()).map(|source| source.mesh)
     }
 
     /// The mesh is no longer used.
     pub fn forget(&mut self, mesh: AssetId<Mesh>) {
-        let rigid = self.rigid.get_mut().unwrap_or_else(PoisonError::into_inner);
-        rigid.retain(|(known, _), _| known.mesh != mesh);
-        let skinned = self
-            .skinned
-            .get_mut()
-            .unwrap_or_else(PoisonError::into_inner);
-        skinned.retain(|known, _| known.mesh != mesh);
+        self.rigid.retain(|(known, _), _| known.mesh != mesh);
+        self.skinned.retain(|known, _| known.mesh != mesh);
     }
 }
 
@@ -58,7 +55,7 @@ pub(crate) struct ColliderMeshes<'w, 's> {
     meshes: Query<'w, 's, &'static Mesh3d>,
     sources: Sources<'w, 's>,
     skins: Skins<'w, 's>,
-    shared: Res<'w, SharedMeshes>,
+    shared: ResMut<'w, SharedMeshes>,
 }
 
 impl ColliderMeshes<'_, '_> {
@@ -115,9 +112,8 @@ impl ColliderMeshes<'_, '_> {
     ///
     /// # Errors
     /// The error of the mesh.
-    pub fn skinned(&self, source: Source) -> Result<Arc<SkinnedTriangles>, ClothError> {
-        let shared = self.shared.skinned.lock();
-        let mut shared = shared.unwrap_or_else(PoisonError::into_inner);
+    pub fn skinned(&mut self, source: Source) -> Result<Arc<SkinnedTriangles>, ClothError> {
+        let shared = &mut self.shared.skinned;
         if let Some(made) = shared.get(&source) {
             return Ok(made.clone());
         }
@@ -133,15 +129,14 @@ impl ColliderMeshes<'_, '_> {
     /// # Errors
     /// The error of the mesh.
     pub fn resolve(
-        &self,
+        &mut self,
         collider: &ClothCollider,
         source: Option<Source>,
     ) -> Result<ClothCollider, ClothError> {
         let (ClothCollider::Mesh(kind), Some(source)) = (collider, source) else {
             return Ok(collider.clone());
         };
-        let shared = self.shared.rigid.lock();
-        let mut shared = shared.unwrap_or_else(PoisonError::into_inner);
+        let shared = &mut self.shared.rigid;
         if let Some(made) = shared.get(&(source, *kind)) {
             return Ok(made.clone());
         }
@@ -154,5 +149,34 @@ impl ColliderMeshes<'_, '_> {
         shared.retain(|(known, _), _| known.mesh != source.mesh || *known == source);
         shared.insert((source, *kind), made.clone());
         Ok(made)
+    }
+}
+
+/// Notes the meshes that a game has changed: cloths and colliders that are made from them are built again.
+pub(crate) fn note_changed_meshes(
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut changed: ResMut<ChangedMeshes>,
+    mut shared: ResMut<SharedMeshes>,
+    cloths: Query<&ClothBuilt>,
+    mut sources: Local<HashSet<AssetId<Mesh>>>,
+) {
+    if events.is_empty() {
+        return;
+    }
+    // Not by way of the colliders: the meshes of cloths that are drawn change in each frame.
+    sources.clear();
+    sources.extend(cloths.iter().filter_map(|built| Some(built.source()?.mesh)));
+    sources.extend(shared.meshes());
+    for event in events.read() {
+        match event {
+            AssetEvent::Modified { id } | AssetEvent::Removed { id } if sources.contains(id) => {
+                *changed.0.entry(*id).or_default() += 1;
+            }
+            AssetEvent::Unused { id } => {
+                changed.0.remove(id);
+                shared.forget(*id);
+            }
+            _ => {}
+        }
     }
 }

@@ -1,15 +1,15 @@
-//! Without Bevy's meshes nothing is made from an asset.
+//! Without Bevy's meshes nothing is made from an asset, and there are no cameras.
 
 use std::{marker::PhantomData, sync::Arc};
 
 use bevy::{
     ecs::{entity::Entity, system::SystemParam},
-    math::Affine3A,
+    math::{Affine3A, Vec3},
     transform::components::GlobalTransform,
 };
 
 use crate::{
-    cloth::{Cloth, ClothError, MeshError, Skinning, Surface, TriangleMesh},
+    cloth::{ClothError, MeshError, Skinning, Surface, TriangleMesh},
     contact::{ClothCollider, SkinnedTriangles},
     plugin::{
         frame::Places,
@@ -17,18 +17,18 @@ use crate::{
     },
 };
 
-/// No assets.
+/// No assets, no skins and no cameras.
 #[derive(SystemParam)]
-pub(crate) struct Sources<'w, 's> {
+pub(crate) struct Nothing<'w, 's> {
     none: PhantomData<(&'w (), &'s ())>,
 }
 
-impl Sources<'_, '_> {
-    /// No cloth has one.
-    pub fn find(
+impl Nothing<'_, '_> {
+    /// Neither a cloth nor a collider has one.
+    pub fn find<C>(
         &self,
         _: Entity,
-        _: &Cloth,
+        _: &C,
         _: Option<Source>,
     ) -> Result<Option<Source>, ClothError> {
         Ok(None)
@@ -42,24 +42,6 @@ impl Sources<'_, '_> {
     /// No recipe has any.
     pub fn mesh(&self, _: &Recipe) -> Result<TriangleMesh, MeshError> {
         Ok(TriangleMesh::default())
-    }
-}
-
-/// No assets for colliders either.
-#[derive(SystemParam)]
-pub(crate) struct ColliderMeshes<'w> {
-    none: PhantomData<&'w ()>,
-}
-
-impl ColliderMeshes<'_> {
-    /// No collider has one.
-    pub fn find(
-        &self,
-        _: Entity,
-        _: &ClothCollider,
-        _: Option<Source>,
-    ) -> Result<Option<Source>, ClothError> {
-        Ok(None)
     }
 
     /// No collider has joints.
@@ -92,15 +74,7 @@ impl ColliderMeshes<'_> {
     ) -> Result<ClothCollider, ClothError> {
         Ok(collider.clone())
     }
-}
 
-/// No skins.
-#[derive(SystemParam)]
-pub(crate) struct Skins<'w, 's> {
-    none: PhantomData<(&'w (), &'s ())>,
-}
-
-impl Skins<'_, '_> {
     /// No entity has joints.
     pub fn read(
         &self,
@@ -120,5 +94,15 @@ impl Skins<'_, '_> {
         known: &[Affine3A],
     ) -> bool {
         known.is_empty()
+    }
+
+    /// No camera is near.
+    pub fn nearest(&self, _: Vec3) -> Option<f32> {
+        None
+    }
+
+    /// Nothing hides an entity.
+    pub fn is_hidden(&self, _: Entity) -> bool {
+        false
     }
 }

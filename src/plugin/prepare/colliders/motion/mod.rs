@@ -40,7 +40,7 @@ pub(crate) struct ColliderMotion {
     /// Normal of a half-space that does not rotate: cloth far above it is not near.
     normal: Option<Vec3>,
     /// Its bounds along the whole path.
-    bounds: Bounds,
+    pub(super) bounds: Bounds,
     /// How many cloths pushed it in the last tick, if it is a body.
     cloths: u32,
     /// Its shape.
@@ -66,7 +66,7 @@ impl ColliderMotion {
         &mut self,
         collider: &ClothCollider,
         places: &Places,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
     ) -> Result<Isometry3d, ClothError> {
         let was_skinned = self.is_skinned();
@@ -102,7 +102,7 @@ impl ColliderMotion {
         collider: &ClothCollider,
         body: Option<&ClothBody>,
         places: &Places,
-        meshes: &ColliderMeshes,
+        meshes: &mut ColliderMeshes,
         entity: Entity,
         time_passes: bool,
     ) -> Result<(), ClothError> {
@@ -245,13 +245,13 @@ impl ColliderMotion {
     /// Writes the inputs of its next path to a snapshot.
     pub fn remember(&self, memory: &mut ColliderMemory) {
         (memory.last, memory.cloths, memory.stay) = (self.last, self.cloths, self.stay);
-        memory.joints.clone_from(self.skinned.memory());
+        memory.joints.clone_from(&self.skinned.last);
     }
 
     /// Restores the inputs of its next path, from a snapshot.
     pub fn recall(&mut self, memory: &ColliderMemory) {
         (self.last, self.cloths, self.stay) = (memory.last, memory.cloths, memory.stay);
-        self.skinned.recall(&memory.joints);
+        self.skinned.last.clone_from(&memory.joints);
     }
 
     /// Whether it follows joints.
@@ -275,12 +275,6 @@ impl ColliderMotion {
         self.last = None;
         self.skinned.stop();
     }
-
-    /// Its bounds along the whole path, for the tree of all colliders.
-    pub fn held_by(&self) -> Bounds {
-        self.bounds
-    }
-
     /// Whether the collider may come within `reach` of a point of the world (m).
     pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
         let offset = point - self.middle;
