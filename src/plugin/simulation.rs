@@ -233,7 +233,6 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     );
 }
 
-/// The components that it adds to a collider.
 /// Adds to each cloth, collider or wind zone the components that it was not spawned with: to those that existed before the
 /// plugin, and to new ones.
 fn give_parts<C: Component, Parts: Bundle + Default>(app: &mut App) {
