@@ -3,6 +3,7 @@
 mod arrays;
 mod cut;
 mod error;
+mod function;
 mod grain;
 mod grid;
 mod grouped;
