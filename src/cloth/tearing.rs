@@ -69,12 +69,8 @@ impl ClothTearing {
     pub fn validate(&self, material: &ClothMaterial) -> Result<(), QuantityError> {
         let is_positive = |value: f32| value > 0.0;
         for strength in [self.strength, self.weft_strength] {
-            QuantityError::check(
-                strength,
-                is_positive,
-                "strength of a cloth that tears (N/m)",
-                "positive",
-            )?;
+            let quantity = "strength of a cloth that tears (N/m)";
+            QuantityError::check(strength, is_positive, quantity, "positive")?;
         }
         for compliance in material.stretch_compliances() {
             let quantity = "stretch compliance of a cloth that tears (m/N)";
