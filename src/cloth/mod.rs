@@ -66,7 +66,9 @@ pub use tears::ClothTears;
 
 pub(crate) use cut::Cut;
 pub(crate) use grouped::Grouped;
-pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z};
+pub(crate) use lanes::{
+    Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z, least, most,
+};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
 pub(crate) use material_map::MaterialFactors;
