@@ -137,7 +137,7 @@ impl MeshCreases {
                     .bending_grain(index)
                     .filter(|_| rigidity.ratio != 1.0);
                 let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
-                let rigidity = rigidity.mean * factors.of_face(*face);
+                let rigidity = rigidity.mean * factors.mean_bending(face);
                 Face::new(&patch, woven, rigidity, &places)
             }));
         }

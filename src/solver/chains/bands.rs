@@ -34,7 +34,7 @@ impl GridBands {
     /// Those in a list, each with a compliance of its own.
     pub fn of_list(grid: &ClothGrid, layout: Layout, list: &SpringList) -> Self {
         let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
-        let on_grid = list.on_grid(grid);
+        let [across, down, falling, rising] = &list.on_grid(grid);
         let band = |step, of: &[f32], direction: Direction| {
             SpringBand::of_rows(grid.step_length(step), layout, rows, |number, column| {
                 let row = direction.row(number, rows);
@@ -42,11 +42,10 @@ impl GridBands {
                 (!compliance.is_nan()).then_some(compliance)
             })
         };
-        let (falling, rising) = (&on_grid.falling, &on_grid.rising);
         let has_diagonals = falling.iter().chain(rising).any(|of| !of.is_nan());
         Self {
-            across: [(); 2].map(|()| band((0, 1), &on_grid.across, Direction::Down)),
-            down: band((1, 0), &on_grid.down, Direction::Down),
+            across: [(); 2].map(|()| band((0, 1), across, Direction::Down)),
+            down: band((1, 0), down, Direction::Down),
             diagonals: has_diagonals.then(|| {
                 [(falling, Direction::Right), (rising, Direction::Left)]
                     .map(|(of, direction)| band((1, 1), of, direction))
