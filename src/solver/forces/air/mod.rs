@@ -46,7 +46,6 @@ use crate::{
         AeroCoefficients, Enclosed, Kernels, LinearForce, Rows, Triangles, Vec3Lanes,
     },
 };
-use gas::Amount;
 use wind::LocalWind;
 
 /// The air around a cloth. By default it has no density.
@@ -140,10 +139,7 @@ impl Airflow {
         let Some(ClothPressure::Gas { volume, outside }) = self.pressure else {
             return DVec3::ZERO;
         };
-        let amount = Amount {
-            volume: volume.into(),
-            outside: outside.into(),
-        };
+        let amount = [volume, outside].map_inline(f64::from);
         let (weight, seconds) = (weight.into(), seconds.into());
         gas.press(amount, self.enclosed, blocks, &self.areas, weight, seconds)
     }
