@@ -239,13 +239,8 @@ impl Layout {
 
     /// All particles, lane by lane of each row.
     pub fn runs(&self) -> impl Iterator<Item = Run> + use<> {
-        let Self {
-            columns,
-            rows,
-            strip,
-            count,
-            ..
-        } = *self;
+        let (columns, rows) = (self.columns, self.rows);
+        let (strip, count) = (self.strip, self.count);
         let lanes = (0..rows).flat_map(|row| (0..LANES as u32).map(move |lane| (row, lane)));
         lanes.filter_map(move |(row, lane)| {
             let index = row * columns + lane * strip;
