@@ -182,12 +182,8 @@ impl ListSolver {
             let (compliance, pull) = (packet.compliance.to_array(), pull.to_array());
             for at in 0..SPRINGS {
                 if compliance[at] > 0.0 {
-                    let tension = scale * pull[at];
-                    add(
-                        [packet.from[at], packet.to[at]],
-                        tension,
-                        compliance[at] * tension,
-                    );
+                    let (ends, tension) = ([packet.from[at], packet.to[at]], scale * pull[at]);
+                    add(ends, tension, compliance[at] * tension);
                 }
             }
         }

@@ -222,14 +222,8 @@ impl SoftSprings {
     /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.
     fn kick(&mut self, blocks: &mut [Block], kick: &Kick, kernels: &Kernels) -> Lanes {
         let mut moved = [[0.0; LANES]; MAX_PARTITIONS];
-        let Self {
-            springs,
-            scratch,
-            borders,
-            partitions,
-            ..
-        } = self;
-        let partitions = *partitions;
+        let (springs, partitions) = (&self.springs, self.partitions);
+        let (scratch, borders) = (&mut self.scratch, &mut self.borders);
         let (rows, strip) = (springs.layout.rows as usize, springs.layout.strip as usize);
         if scratch.len() < partitions {
             scratch.resize(partitions, scratch[0].clone());
@@ -249,10 +243,8 @@ impl SoftSprings {
             .take(partitions)
             .enumerate();
         let parts = each.map(|(partition, (scratch, moved))| {
-            let own = take(
-                &mut rest,
-                (first_row(partition + 1) - first_row(partition)) * strip,
-            );
+            let rows = first_row(partition + 1) - first_row(partition);
+            let own = take(&mut rest, rows * strip);
             // Of each border, the row above it and the row below it.
             let row = |at: usize| borders.get(at * strip..(at + 1) * strip).unwrap_or(&[]);
             let above: &[Block] = partition
@@ -264,6 +256,7 @@ impl SoftSprings {
         in_partitions(parts, |(own, first, around, scratch, moved)| {
             (kernels.kick)(own, first, around, springs, kick, scratch, moved);
         });
+        let moved = &moved[..partitions];
         array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))
     }
 }
