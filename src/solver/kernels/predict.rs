@@ -88,7 +88,7 @@ pub(crate) struct ForceStep<'a> {
     pub inverse_substep: f32,
 }
 
-/// What moves the particles of a block beside their own motion (m).
+/// The pulls of a prediction and of forces on the particles of a block (m).
 #[inline(always)]
 fn pulls<const FORCED: bool>(
     (index, view): (usize, &View),

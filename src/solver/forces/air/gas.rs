@@ -93,8 +93,8 @@ impl Gas {
     }
 }
 
-/// The pressure (Pa) of a gas, of this volume (m³) at the pressure outside (Pa), in a volume that is `without` m³ and grows by `give` m³ for each pascal. It is
-/// limited so that the volume does not exceed `widest` m³.
+/// The pressure (Pa) of a gas that has this volume (m³) at the pressure outside (Pa). Its container has `without` m³, and grows by
+/// `give` m³ for each pascal. The pressure is limited so that the volume does not exceed `widest` m³.
 fn pressure([volume, outside]: [f64; 2], without: f64, give: f64, widest: f64) -> f64 {
     // V² − (V* − S p₀) V − S p₀ V₀ = 0.
     let held = give * outside;
