@@ -57,6 +57,7 @@ impl SpringList {
     }
 
     /// The compliances of the springs along a grid (m/N), by the particle that each begins at; NaN where there is none.
+    /// They lead to the right, down, and to the right in the row below and in the row above.
     pub fn on_grid(&self, grid: &ClothGrid) -> [Vec<f32>; 4] {
         let columns = grid.columns();
         let [mut across, mut down, mut falling, mut rising] =
