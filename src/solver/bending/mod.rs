@@ -207,7 +207,9 @@ impl Bending {
     pub(super) fn recall_creases(&mut self, creases: &[f32]) {
         match &mut self.of {
             Kind::Grid(grid) => grid.creases.as_mut().map(|of| of.recall(creases)),
-            of => (of.mesh_mut()).and_then(|mesh| Some(mesh.creases.as_mut()?.recall(creases))),
+            of => {
+                (of.mesh_mut().and_then(|mesh| mesh.creases.as_mut())).map(|of| of.recall(creases))
+            }
         };
     }
 
@@ -218,9 +220,8 @@ impl Bending {
         };
         match &mut self.of {
             Kind::Grid(grid) => grid.creases.as_mut().map(|of| of.flow(creasing, blocks)),
-            of => {
-                (of.mesh_mut()).and_then(|mesh| Some(mesh.creases.as_mut()?.flow(creasing, blocks)))
-            }
+            of => (of.mesh_mut().and_then(|mesh| mesh.creases.as_mut()))
+                .map(|of| of.flow(creasing, blocks)),
         };
     }
 }

@@ -81,7 +81,7 @@ impl GridSolver {
         }
         let all = self.scratch.split(direction, (strip, partitions), blocks);
         in_partitions(all, |mut chains| {
-            (kernels.solve_chains)(&mut chains, springs)
+            (kernels.solve_chains)(&mut chains, springs);
         });
     }
 
@@ -234,7 +234,7 @@ impl GridSolver {
         });
         let springs = &self.bands.across;
         in_partitions(parts, |mut rows| {
-            (kernels.solve_rows)(&mut rows, springs, false)
+            (kernels.solve_rows)(&mut rows, springs, false);
         });
     }
 }

@@ -130,11 +130,11 @@ fn without_past<const FORCED: bool>(
     for (index, block) in row.iter_mut().enumerate() {
         let view = block.view_mut();
         let pulls = pulls::<FORCED>((index, view), prediction, forces);
-        for axis in 0..3 {
+        for (axis, pulls) in pulls.iter().enumerate() {
             let at = DX + axis * LANES;
             for l in 0..LANES {
                 let now = view[at + l];
-                let moved = now * prediction.own + pulls[axis][l];
+                let moved = now * prediction.own + pulls[l];
                 view[at + l] = if view[W + l] > 0.0 { moved } else { now };
             }
         }
