@@ -69,25 +69,19 @@ impl GridShape {
     /// [`GridError::TooSmall`] or [`GridError::TooLarge`]. [`GridError::Quantity`] for a spacing that is not
     /// positive, not finite, below 10⁻⁹ m, or that makes the cloth larger than 10¹² m.
     pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, GridError> {
-        let Self {
-            columns,
-            rows,
-            spacing,
-            plane,
-            centred,
-        } = *self;
+        let Self { columns, rows, .. } = *self;
         if columns < 2 || rows < 2 {
             return Err(GridError::TooSmall { columns, rows });
         }
         let name = "spacing (m)";
-        QuantityError::check(spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
-        let scaled = spacing
-            * match plane {
+        QuantityError::check(self.spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
+        let scaled = self.spacing
+            * match self.plane {
                 ClothPlane::Hanging => scale.truncate(),
                 ClothPlane::Lying => scale.xz(),
             };
-        let axes = plane.axes();
-        ClothGrid::new([columns, rows], scaled, axes, scale, centred)
+        let axes = self.plane.axes();
+        ClothGrid::new([columns, rows], scaled, axes, scale, self.centred)
     }
 }
 

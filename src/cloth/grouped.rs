@@ -10,7 +10,7 @@ pub(crate) struct Grouped<T> {
     items: Vec<T>,
 }
 
-impl<T: Copy> Grouped<T> {
+impl<T: Copy + Default> Grouped<T> {
     /// Groups items, each with the index of its group. Those of one group stay in their order. `items` is called twice.
     pub fn new<I: Iterator<Item = (u32, T)>>(groups: usize, items: impl Fn() -> I) -> Self {
         let mut first = vec![0; groups + 1];
@@ -20,14 +20,8 @@ impl<T: Copy> Grouped<T> {
         for group in 0..groups {
             first[group + 1] += first[group];
         }
-        let Some((_, some)) = items().next() else {
-            return Self {
-                first,
-                items: Vec::new(),
-            };
-        };
         let mut next = first.clone();
-        let mut grouped = vec![some; first[groups] as usize];
+        let mut grouped = vec![T::default(); first[groups] as usize];
         for (group, item) in items() {
             let next = &mut next[group as usize];
             grouped[*next as usize] = item;
@@ -42,6 +36,11 @@ impl<T: Copy> Grouped<T> {
     /// Number of groups.
     pub fn len(&self) -> usize {
         self.first.len().saturating_sub(1)
+    }
+
+    /// The items of all groups, one after the other.
+    pub fn all(&self) -> &[T] {
+        &self.items
     }
 
     /// The places of a group's items in the list.

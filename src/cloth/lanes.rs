@@ -33,6 +33,18 @@ const END: usize = 7 * LANES;
 /// The numbers of eight particles, each quantity's together.
 pub(crate) type View = [f32; END];
 
+/// Compiles to one instruction.
+#[inline(always)]
+pub(crate) fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Compiles to one instruction.
+#[inline(always)]
+pub(crate) fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// Eight particles: 256 bytes, four cache lines. The last eight numbers are room for a view to be shifted.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
@@ -227,13 +239,8 @@ impl Layout {
 
     /// All particles, lane by lane of each row.
     pub fn runs(&self) -> impl Iterator<Item = Run> + use<> {
-        let Self {
-            columns,
-            rows,
-            strip,
-            count,
-            ..
-        } = *self;
+        let (columns, rows) = (self.columns, self.rows);
+        let (strip, count) = (self.strip, self.count);
         let lanes = (0..rows).flat_map(|row| (0..LANES as u32).map(move |lane| (row, lane)));
         lanes.filter_map(move |(row, lane)| {
             let index = row * columns + lane * strip;

@@ -3,6 +3,7 @@
 mod arrays;
 mod cut;
 mod error;
+mod function;
 mod grain;
 mod grid;
 mod grouped;
@@ -66,7 +67,9 @@ pub use tears::ClothTears;
 
 pub(crate) use cut::Cut;
 pub(crate) use grouped::Grouped;
-pub(crate) use lanes::{Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z};
+pub(crate) use lanes::{
+    Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z, least, most,
+};
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
 pub(crate) use material_map::MaterialFactors;

@@ -28,15 +28,23 @@ impl QuantityError {
         quantity: &'static str,
         expected: &'static str,
     ) -> Result<f32, Self> {
-        if test(value) {
-            Ok(value)
-        } else {
-            Err(Self {
-                quantity,
-                expected,
-                value,
-            })
-        }
+        test(value).then_some(value).ok_or(Self {
+            quantity,
+            expected,
+            value,
+        })
+    }
+
+    /// `value` if it is positive and finite.
+    pub(crate) fn positive(value: f32, quantity: &'static str) -> Result<f32, Self> {
+        let is_positive = |value: f32| value > 0.0 && value.is_finite();
+        Self::check(value, is_positive, quantity, "positive and finite")
+    }
+
+    /// `value` if it is finite and not negative.
+    pub(crate) fn not_negative(value: f32, quantity: &'static str) -> Result<f32, Self> {
+        let is_not_negative = |value: f32| value >= 0.0 && value.is_finite();
+        Self::check(value, is_not_negative, quantity, "zero or more, and finite")
     }
 }
 

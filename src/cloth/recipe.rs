@@ -365,12 +365,8 @@ impl Cloth {
     /// [`QuantityError`] for an unevenness out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
         let range = |u: f32| (0.0..=0.1).contains(&u);
-        QuantityError::check(
-            self.unevenness,
-            range,
-            "unevenness (spacings)",
-            "from 0 to 0.1",
-        )?;
+        let name = "unevenness (spacings)";
+        QuantityError::check(self.unevenness, range, name, "from 0 to 0.1")?;
         Ok(())
     }
 }

@@ -55,13 +55,8 @@ impl RopeShape {
     pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, GridError> {
         let count = self.particles as f32;
         QuantityError::check(count, |n| n >= 2.0, "particles of a rope", "at least 2")?;
-        let is_length = |length: f32| length > 0.0 && length.is_finite();
-        for (length, name) in [
-            (self.spacing, "spacing of a rope (m)"),
-            (self.radius, "radius of a rope (m)"),
-        ] {
-            QuantityError::check(length, is_length, name, "positive and finite")?;
-        }
+        QuantityError::positive(self.spacing, "spacing of a rope (m)")?;
+        QuantityError::positive(self.radius, "radius of a rope (m)")?;
         let (axes, along) = match self.plane {
             ClothPlane::Hanging => ([Vec3::NEG_Y, Vec3::NEG_X], scale.y),
             ClothPlane::Lying => ([Vec3::X, Vec3::Z], scale.x),
@@ -123,14 +118,9 @@ impl RopePath {
             return Err(MeshError::VertexNotFinite { vertex, position }.into());
         }
         let unscaled = along(&self.points).1;
-        let is_length = |length: f32| length > 0.0 && length.is_finite();
-        for (length, name) in [
-            (self.spacing, "spacing of a rope (m)"),
-            (self.radius, "radius of a rope (m)"),
-            (unscaled, "length of a rope's path (m)"),
-        ] {
-            QuantityError::check(length, is_length, name, "positive and finite")?;
-        }
+        QuantityError::positive(self.spacing, "spacing of a rope (m)")?;
+        QuantityError::positive(self.radius, "radius of a rope (m)")?;
+        QuantityError::positive(unscaled, "length of a rope's path (m)")?;
         let parts = (unscaled / self.spacing).round();
         let parts = parts.clamp(1.0, MAX_PARTICLES as f32) as u32;
         let (reached, length) = along(&points);

@@ -69,12 +69,8 @@ impl ClothTearing {
     pub fn validate(&self, material: &ClothMaterial) -> Result<(), QuantityError> {
         let is_positive = |value: f32| value > 0.0;
         for strength in [self.strength, self.weft_strength] {
-            QuantityError::check(
-                strength,
-                is_positive,
-                "strength of a cloth that tears (N/m)",
-                "positive",
-            )?;
+            let quantity = "strength of a cloth that tears (N/m)";
+            QuantityError::check(strength, is_positive, quantity, "positive")?;
         }
         for compliance in material.stretch_compliances() {
             let quantity = "stretch compliance of a cloth that tears (m/N)";
@@ -95,21 +91,15 @@ pub(crate) struct Strength<'a> {
 impl Strength<'_> {
     /// The load that an edge bears (N/m). `along_warp` is the square of the cosine of its angle with the warp.
     fn load(&self, along_warp: f32) -> f32 {
-        let ClothTearing {
-            strength,
-            weft_strength,
-        } = *self.tearing;
-        between([weft_strength, strength], along_warp)
+        let tearing = self.tearing;
+        between([tearing.weft_strength, tearing.strength], along_warp)
     }
 
     /// The strain of an edge at the load that it bears.
     fn strain(&self, ends: [u32; 2], along_warp: f32) -> f32 {
         let [weft, warp] = self.material.stretch_compliances();
-        let ClothTearing {
-            strength,
-            weft_strength,
-        } = *self.tearing;
-        let strains = [weft * weft_strength, warp * strength];
+        let tearing = self.tearing;
+        let strains = [weft * tearing.weft_strength, warp * tearing.strength];
         let linear = between(strains, along_warp) * self.factors.of_spring(ends);
         let stiffening = self.material.stiffening;
         stiffening.map_or(linear, |stiffening| stiffening.strain_of(linear))

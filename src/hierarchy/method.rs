@@ -39,42 +39,26 @@ pub enum SearchMethod {
 /// Number of pairs of a volume and a rule, whether they match or not.
 const PAIRS: usize = BoundingVolume::ALL.len() * BoundRule::ALL.len();
 
-const fn pair(index: usize) -> (BoundingVolume, BoundRule) {
-    let volumes = BoundingVolume::ALL.len();
-    let (_, volume) = BoundingVolume::ALL[index % volumes];
-    let (_, rule) = BoundRule::ALL[index / volumes];
-    (volume, rule)
-}
-
-/// Number of methods: `Auto`, `Scan`, and the pairs that match.
-const COUNT: usize = {
-    let (mut count, mut index) = (2, 0);
+/// All methods, and how many they are: `Auto`, `Scan`, and the pairs that match.
+const METHODS: ([SearchMethod; 2 + PAIRS], usize) = {
+    let mut all = [SearchMethod::Auto; 2 + PAIRS];
+    all[1] = SearchMethod::Scan;
+    let (mut next, mut index) = (2, 0);
     while index < PAIRS {
-        let (volume, rule) = pair(index);
+        let (_, volume) = BoundingVolume::ALL[index % BoundingVolume::ALL.len()];
+        let (_, rule) = BoundRule::ALL[index / BoundingVolume::ALL.len()];
         if rule.matches(volume) {
-            count += 1;
+            all[next] = SearchMethod::Tree(volume, rule);
+            next += 1;
         }
         index += 1;
     }
-    count
+    (all, next)
 };
 
 impl SearchMethod {
     /// All methods, for menus.
-    pub const ALL: [Self; COUNT] = {
-        let mut all = [Self::Auto; COUNT];
-        all[1] = Self::Scan;
-        let (mut next, mut index) = (2, 0);
-        while index < PAIRS {
-            let (volume, rule) = pair(index);
-            if rule.matches(volume) {
-                all[next] = Self::Tree(volume, rule);
-                next += 1;
-            }
-            index += 1;
-        }
-        all
-    };
+    pub const ALL: [Self; METHODS.1] = *METHODS.0.first_chunk().expect("as many");
 
     /// The rule of the volumes, if the method uses any.
     pub fn rule(self) -> Option<BoundRule> {

@@ -145,11 +145,7 @@ impl Core {
             }
             Self::Cuboid { pose, half_size } => {
                 let centre = Vec3::from(pose.translation);
-                let Mat3 {
-                    x_axis,
-                    y_axis,
-                    z_axis,
-                } = Mat3::from_quat(pose.rotation);
+                let axes = Mat3::from_quat(pose.rotation);
                 for l in 0..LANES {
                     let (x, y, z) = (
                         view[X + l] - centre.x,
@@ -161,9 +157,9 @@ impl Core {
                         if beyond > 0.0 { beyond } else { 0.0 }
                     };
                     let (x, y, z) = (
-                        outside(x_axis, half_size.x),
-                        outside(y_axis, half_size.y),
-                        outside(z_axis, half_size.z),
+                        outside(axes.x_axis, half_size.x),
+                        outside(axes.y_axis, half_size.y),
+                        outside(axes.z_axis, half_size.z),
                     );
                     any |= x * x + y * y + z * z <= reach * reach;
                 }

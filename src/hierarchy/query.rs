@@ -38,11 +38,9 @@ impl TopDownQuery {
         self.found.leaf_tests = 0;
     }
 
-    /// A search whose [`visits`](Self::visits) nobody reads, so that it does not keep them.
-    pub(crate) fn silent() -> Self {
-        let mut query = Self::default();
-        query.found.is_silent = true;
-        query
+    /// Keeps no [`visits`](Self::visits) from now on, where nobody reads them.
+    pub(crate) fn silence(&mut self) {
+        self.found.is_silent = true;
     }
 
     /// Searches for `probe`, and appends to the results since [`clear`](Self::clear). Returns the range of the probe's

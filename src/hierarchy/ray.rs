@@ -36,22 +36,12 @@ impl RayHit {
 }
 
 /// Memory of a search for a ray, which is reused.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct RayQuery {
     bounds: NodeBounds,
     query: TopDownQuery,
     /// The corners of a particle's faces, [seen](View) by the ray.
     corners: Vec<DVec3>,
-}
-
-impl Default for RayQuery {
-    fn default() -> Self {
-        Self {
-            bounds: NodeBounds::default(),
-            query: TopDownQuery::silent(),
-            corners: Vec::new(),
-        }
-    }
 }
 
 impl RayQuery {
@@ -81,6 +71,7 @@ impl RayQuery {
             .rebuild(spheres, tree, particles, stretch)
             .ok()?;
         self.query.clear();
+        self.query.silence();
         let probe = Probe {
             core: Core::Segment(ends.map_inline(|distance| ray.get_point(distance))),
             radius: reach,

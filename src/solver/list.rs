@@ -182,12 +182,8 @@ impl ListSolver {
             let (compliance, pull) = (packet.compliance.to_array(), pull.to_array());
             for at in 0..SPRINGS {
                 if compliance[at] > 0.0 {
-                    let tension = scale * pull[at];
-                    add(
-                        [packet.from[at], packet.to[at]],
-                        tension,
-                        compliance[at] * tension,
-                    );
+                    let (ends, tension) = ([packet.from[at], packet.to[at]], scale * pull[at]);
+                    add(ends, tension, compliance[at] * tension);
                 }
             }
         }
@@ -215,13 +211,13 @@ impl ListSolver {
     pub fn solve_there(&mut self, kernels: &Kernels) {
         let (rows, step_scale) = (&mut self.rows, &self.step_scale);
         self.chains.solve_there(rows, step_scale, kernels);
-        (kernels.relax_packets_there)(rows, &self.packets, &mut self.pulls, step_scale);
+        (kernels.relax_packets)(rows, &self.packets, &mut self.pulls, step_scale, false);
     }
 
     /// The same backward, after [`solve_there`](Self::solve_there).
     pub fn solve_back(&mut self, kernels: &Kernels) {
         let (rows, step_scale) = (&mut self.rows, &self.step_scale);
-        (kernels.relax_packets_back)(rows, &self.packets, &mut self.pulls, step_scale);
+        (kernels.relax_packets)(rows, &self.packets, &mut self.pulls, step_scale, true);
         self.chains.solve_back(rows, step_scale, kernels);
     }
 

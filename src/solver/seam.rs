@@ -116,34 +116,36 @@ impl Thread {
         from <= self.at && self.at <= to && from < to
     }
 
+    /// Its particles, with their weights.
+    fn each<'a>(&self, states: &'a [State]) -> impl Iterator<Item = (&'a State, f32)> + use<'a> {
+        let each = self.nodes.into_iter().zip(self.weights);
+        each.map(|(node, weight)| (&states[node as usize], weight))
+    }
+
+    /// The sum of a vector of its particles, by their weights.
+    fn sum(&self, states: &[State], part: fn(&State) -> Vec3) -> Vec3 {
+        let each = self.each(states);
+        each.map(|(state, weight)| weight * part(state)).sum()
+    }
+
     /// The vector to its point (m).
     fn apart(&self, states: &[State]) -> Vec3 {
-        let each = self.nodes.iter().zip(self.weights);
-        let of = |part: fn(&State) -> Vec3| {
-            let each = each.clone();
-            each.map(|(&node, weight)| weight * part(&states[node as usize]))
-                .sum::<Vec3>()
-        };
         // Pushes are far smaller than places.
-        of(|state| state.place) + of(|state| state.push)
+        self.sum(states, |state| state.place) + self.sum(states, |state| state.push)
     }
 
     /// Its inverse mass (1/kg).
     fn inverse_mass(&self, states: &[State]) -> f32 {
-        let each = self.nodes.iter().zip(self.weights);
-        each.map(|(&node, weight)| weight * weight * states[node as usize].inverse_mass)
+        let each = self.each(states);
+        each.map(|(state, weight)| weight * weight * state.inverse_mass)
             .sum()
     }
 
     /// How far springs have moved its lightest particle off the others in the sub-step (m). Where contact pushed them apart before does
     /// not count: more sub-steps would not change that.
     fn moved(&self, states: &[State]) -> f32 {
-        let each = self.nodes.iter().zip(self.weights);
-        let each = each.map(|(&node, weight)| (&states[node as usize], weight));
-        let before: Vec3 = (each.clone())
-            .map(|(state, weight)| weight * state.before)
-            .sum();
-        let lightest = each.map(|(state, weight)| weight.abs() * state.inverse_mass);
+        let before = self.sum(states, |state| state.before);
+        let lightest = (self.each(states)).map(|(state, weight)| weight.abs() * state.inverse_mass);
         let part = lightest.fold(0.0, f32::max) / self.inverse_mass(states);
         let moved = (self.apart(states).length() - before.length()) * part;
         // Not so for NaN, as of a cloth that is lost.

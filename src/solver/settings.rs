@@ -74,9 +74,7 @@ impl ClothSettings {
             ..Default::default()
         }
     }
-}
 
-impl ClothSettings {
     /// Checks that each value is in its range.
     ///
     /// # Errors
@@ -89,27 +87,13 @@ impl ClothSettings {
                 stretch,
                 max_substeps,
             } => {
-                QuantityError::check(
-                    stretch,
-                    |v| v > 0.0 && v.is_finite(),
-                    "tolerance of stretch",
-                    "positive and finite",
-                )?;
+                QuantityError::positive(stretch, "tolerance of stretch")?;
                 max_substeps
             }
         };
-        QuantityError::check(
-            substeps as f32,
-            |v| (1.0..=MAX_SUBSTEPS as f32).contains(&v),
-            "sub-steps",
-            "from 1 to 10,000",
-        )?;
-        QuantityError::check(
-            self.particle_radius,
-            |v| v >= 0.0 && v.is_finite(),
-            "particle radius (m)",
-            "zero or more, and finite",
-        )?;
+        let range = |v: f32| (1.0..=MAX_SUBSTEPS as f32).contains(&v);
+        QuantityError::check(substeps as f32, range, "sub-steps", "from 1 to 10,000")?;
+        QuantityError::not_negative(self.particle_radius, "particle radius (m)")?;
         for value in self.gravity.unwrap_or(Vec3::ZERO).to_array() {
             QuantityError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
         }

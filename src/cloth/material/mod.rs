@@ -106,54 +106,25 @@ impl ClothMaterial {
     /// [`QuantityError`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
         let check = QuantityError::check;
-        let finite = |v: f32| v >= 0.0 && v.is_finite();
-        let not_negative = |v: f32| v >= 0.0;
-        check(
-            self.areal_density,
-            |v: f32| v > 0.0 && v.is_finite(),
-            "areal density (kg/m²)",
-            "positive",
-        )?;
-        let range = "zero or more, and finite";
-        check(
-            self.stretch_compliance,
-            finite,
-            "stretch compliance (m/N)",
-            range,
-        )?;
-        check(self.bend_rigidity, finite, "bending rigidity (N·m)", range)?;
+        let finite = QuantityError::not_negative;
+        let positive = |v: f32| v > 0.0 && v.is_finite();
+        let name = "areal density (kg/m²)";
+        check(self.areal_density, positive, name, "positive")?;
+        finite(self.stretch_compliance, "stretch compliance (m/N)")?;
+        finite(self.bend_rigidity, "bending rigidity (N·m)")?;
         if let Some(weft) = self.weft {
-            check(
-                weft.stretch_compliance,
-                finite,
-                "stretch compliance of the weft (m/N)",
-                range,
-            )?;
-            check(
-                weft.bend_rigidity,
-                finite,
-                "bending rigidity of the weft (N·m)",
-                range,
-            )?;
+            let stretch = weft.stretch_compliance;
+            finite(stretch, "stretch compliance of the weft (m/N)")?;
+            finite(weft.bend_rigidity, "bending rigidity of the weft (N·m)")?;
         }
         if let Some(stiffening) = self.stiffening {
             stiffening.validate()?;
         }
-        check(self.friction, finite, "friction μ", range)?;
-        let range = "zero or more";
-        check(
-            self.shear_compliance,
-            not_negative,
-            "shear compliance (m/N)",
-            range,
-        )?;
+        finite(self.friction, "friction μ")?;
+        let name = "shear compliance (m/N)";
+        check(self.shear_compliance, |v| v >= 0.0, name, "zero or more")?;
+        finite(self.stretch_damping, "damping along springs (s)")?;
         let unit = |v: f32| (0.0..=1.0).contains(&v);
-        check(
-            self.stretch_damping,
-            finite,
-            "damping along springs (s)",
-            "zero or more, and finite",
-        )?;
         check(self.damping, unit, "damping D", "from 0 to 1")?;
         Ok(())
     }

@@ -35,11 +35,9 @@ impl ClothMaterial {
         stretch_compliance: 2.0e-4,
         shear_compliance: 1.0e-2,
         bend_rigidity: 2.0e-6,
-        weft: None,
-        stiffening: None,
-        stretch_damping: 0.0,
         damping: 0.005,
         friction: 0.2,
+        ..Self::COTTON
     };
     /// An 11 oz cotton twill, as in jeans: five times as stiff along its warp as along its weft.
     pub const DENIM: Self = Self {
@@ -89,7 +87,6 @@ impl ClothMaterial {
             round += 1;
         }
         Self {
-            areal_density: 0.0,
             stretch_compliance: 1.0 / along,
             shear_compliance: 1.0 / shear,
             bend_rigidity: bend[0],
@@ -97,10 +94,7 @@ impl ClothMaterial {
                 stretch_compliance: 1.0 / across,
                 bend_rigidity: bend[1],
             }),
-            stiffening: None,
-            stretch_damping: 0.0,
-            damping: 0.0,
-            friction: 0.0,
+            ..Self::COTTON
         }
     }
 
@@ -111,11 +105,9 @@ impl ClothMaterial {
         stretch_compliance: 2.0e-5,
         shear_compliance: 1.0e-4,
         bend_rigidity: 3.6e-4,
-        weft: None,
-        stiffening: None,
-        stretch_damping: 0.0,
         damping: 0.02,
         friction: 0.6,
+        ..Self::COTTON
     };
     /// Pressed wool, a millimetre thick, as in a hat: the same in all directions, and stiff in shear. Rigidity: that of
     /// a bending length c of 3.4 cm by D = g ρ c³ (Peirce 1930), an estimate.
@@ -124,11 +116,9 @@ impl ClothMaterial {
         stretch_compliance: 5.0e-4,
         shear_compliance: 1.0e-3,
         bend_rigidity: 1.0e-4,
-        weft: None,
-        stiffening: None,
-        stretch_damping: 0.0,
         damping: 0.04,
         friction: 0.6,
+        ..Self::COTTON
     };
     /// Sheepskin, 0.8 mm thick, as in a jacket. Rigidity: chosen so that it drapes like garment leathers of 0.64 to
     /// 0.96 mm, by 47 to 70 % (Memon et al. 2021, Materials 14, 4553).
@@ -137,11 +127,9 @@ impl ClothMaterial {
         stretch_compliance: 2.0e-4,
         shear_compliance: 4.0e-4,
         bend_rigidity: 5.0e-5,
-        weft: None,
-        stiffening: None,
-        stretch_damping: 0.0,
         damping: 0.04,
         friction: 0.6,
+        ..Self::COTTON
     };
     /// Stretchy and grippy, like a thin rubber sheet. Rigidity: that of a millimetre of natural rubber with a Young's
     /// modulus of 1.5 N/mm², E h³ ⁄ 12 (1 − ν²).
@@ -150,11 +138,9 @@ impl ClothMaterial {
         stretch_compliance: 3.0e-3,
         shear_compliance: 3.0e-3,
         bend_rigidity: 1.7e-4,
-        weft: None,
-        stiffening: None,
-        stretch_damping: 0.0,
         damping: 0.03,
         friction: 0.9,
+        ..Self::COTTON
     };
     /// The named materials, for menus.
     pub const PRESETS: [(&str, Self); 11] = [

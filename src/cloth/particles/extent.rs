@@ -4,7 +4,7 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::ClothParticles;
 use crate::cloth::{
-    lanes::{DX, LANES, X, Y, Z},
+    lanes::{DX, LANES, X, Y, Z, most},
     surface::Surface,
 };
 
@@ -27,12 +27,7 @@ impl ClothParticles {
                     before += came * came;
                 }
                 is_nan[lane] |= (now + before).is_nan();
-                let farther = if now > before { now } else { before };
-                largest[lane] = if farther > largest[lane] {
-                    farther
-                } else {
-                    largest[lane]
-                };
+                largest[lane] = most(most(now, before), largest[lane]);
             }
         }
         if is_nan.contains(&true) {
@@ -60,11 +55,7 @@ impl ClothParticles {
                     let z = view[Z + lane] - was[Z + lane];
                     let square = x * x + y * y + z * z;
                     sum[lane] += square;
-                    largest[lane] = if square > largest[lane] {
-                        square
-                    } else {
-                        largest[lane]
-                    };
+                    largest[lane] = most(square, largest[lane]);
                 }
             }
             let farthest = largest.into_iter().fold(0.0, f32::max);

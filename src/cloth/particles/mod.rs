@@ -182,9 +182,7 @@ impl ClothParticles {
         Self {
             layout,
             blocks: vec![Block::EMPTY; layout.blocks()],
-            substep: DEFAULT_SUBSTEP,
-            past: Past::default(),
-            loads: Vec::new(),
+            ..Self::default()
         }
     }
 

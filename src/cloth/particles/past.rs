@@ -193,13 +193,7 @@ impl Past {
                 }
             }
         }
-        Self {
-            blocks,
-            is_known: self.is_known,
-            wait: self.wait,
-            has_moved: self.has_moved,
-            watch: self.watch,
-        }
+        Self { blocks, ..*self }
     }
 
     /// Copies `other` into the existing allocation.

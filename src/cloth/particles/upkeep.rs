@@ -9,7 +9,7 @@ use super::{
 };
 use crate::cloth::{
     arrays::MapInline,
-    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X},
+    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X, most},
     material::ClothMaterial,
     pins::Pins,
     quantity::QuantityError,
@@ -39,9 +39,8 @@ impl ClothParticles {
         pins: &Pins,
     ) -> Result<(), QuantityError> {
         factors.check(surface, material)?;
-        for (index, slot) in self.layout.slots().enumerate() {
-            let mass = factors.mass(index, surface, material);
-            self.blocks[slot.block].set_inverse_mass(slot.lane, 1.0 / mass);
+        for index in 0..self.layout.len() {
+            self.assign_mass(index, surface, material, factors);
         }
         pins.for_each(surface, |index| self.pin(index));
         self.past.forget(AFTER_A_JUMP);
@@ -108,11 +107,7 @@ impl ClothParticles {
             for lane in 0..LANES {
                 let moved = square(DX, lane);
                 valid[lane] &= is_valid(square(X, lane) + moved, view[W + lane]);
-                largest[lane] = if moved > largest[lane] {
-                    moved
-                } else {
-                    largest[lane]
-                };
+                largest[lane] = most(moved, largest[lane]);
             }
         }
         Survey {

@@ -1,11 +1,11 @@
 //! Pins: selections of particles to pin.
 
-use std::{fmt, sync::Arc};
-
 use bevy::{
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
+
+use crate::cloth::function::define_function;
 
 /// A corner of the cloth at rest, seen from its front: +z, or +y for a lying cloth.
 #[derive(Reflect, Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -69,71 +69,19 @@ pub enum Pin {
     },
 }
 
-/// A predicate of (row, column). The default pins none.
-#[derive(Clone)]
-pub struct PinPredicate(Arc<dyn Fn(u32, u32) -> bool + Send + Sync>);
-
-impl PinPredicate {
+define_function! {
+    /// A predicate of (row, column). The default pins none.
+    PinPredicate,
     /// Pins every particle for which `holds(row, column)` returns true.
-    pub fn new(holds: impl Fn(u32, u32) -> bool + Send + Sync + 'static) -> Self {
-        Self(Arc::new(holds))
-    }
-
-    pub(crate) fn holds(&self, row: u32, column: u32) -> bool {
-        (self.0)(row, column)
-    }
+    holds(row: u32, column: u32) -> bool, false
 }
 
-/// A predicate of a particle's position at rest, in the entity's frame (m), before the transform's scale. The default
-/// pins none.
-#[derive(Clone)]
-pub struct RestPredicate(Arc<dyn Fn(Vec3) -> bool + Send + Sync>);
-
-impl RestPredicate {
+define_function! {
+    /// A predicate of a particle's position at rest, in the entity's frame (m), before the transform's scale. The default
+    /// pins none.
+    RestPredicate,
     /// Pins every particle for which `holds(position at rest)` returns true.
-    pub fn new(holds: impl Fn(Vec3) -> bool + Send + Sync + 'static) -> Self {
-        Self(Arc::new(holds))
-    }
-
-    pub(crate) fn holds(&self, place: Vec3) -> bool {
-        (self.0)(place)
-    }
-}
-
-impl Default for RestPredicate {
-    fn default() -> Self {
-        Self::new(|_| false)
-    }
-}
-
-impl fmt::Debug for RestPredicate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("..")
-    }
-}
-
-impl PartialEq for RestPredicate {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
-impl Default for PinPredicate {
-    fn default() -> Self {
-        Self::new(|_, _| false)
-    }
-}
-
-impl fmt::Debug for PinPredicate {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("..")
-    }
-}
-
-impl PartialEq for PinPredicate {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
+    holds(place: Vec3) -> bool, false
 }
 
 impl Pin {

@@ -10,7 +10,7 @@ const AT_END: f32 = 1.0e-4;
 pub(crate) struct Line {
     pub particles: Vec<u32>,
     /// Where each is along the line, as a fraction of its length at rest (0 to 1).
-    at: Vec<f32>,
+    pub at: Vec<f32>,
     /// Length at rest (m); of a ring, all around.
     pub length: f32,
     /// Whether its last particle is beside its first.
@@ -25,6 +25,11 @@ pub(super) struct Alignment {
 }
 
 impl Alignment {
+    const SAME: Self = Self {
+        start: 0.0,
+        direction: 1.0,
+    };
+
     pub fn of(self, at: f32) -> f32 {
         self.start + self.direction * at
     }
@@ -57,11 +62,6 @@ impl Line {
             length,
             is_ring,
         }
-    }
-
-    /// Where each particle is along it (0 to 1).
-    pub fn at(&self) -> &[f32] {
-        &self.at
     }
 
     /// The length of it that belongs to a particle (m).
@@ -125,17 +125,10 @@ impl Line {
         };
         let alignments = starts.iter().flat_map(|&start| {
             let back = if other.is_ring { start } else { 1.0 };
-            [(start, 1.0), (back, -1.0)]
+            [(start, 1.0), (back, -1.0)].map(|(start, direction)| Alignment { start, direction })
         });
-        let mut best = (
-            f32::INFINITY,
-            Alignment {
-                start: 0.0,
-                direction: 1.0,
-            },
-        );
-        for (start, direction) in alignments {
-            let alignment = Alignment { start, direction };
+        let mut best = (f32::INFINITY, Alignment::SAME);
+        for alignment in alignments {
             let squares = self.particles.iter().zip(&self.at).map(|(&particle, &at)| {
                 let there = other.point(alignment.of(at), others);
                 own[particle as usize].distance_squared(there)

@@ -81,7 +81,7 @@ fn sew(
         0 => (first, second),
         _ => (second, first),
     };
-    for (index, (&point, &at)) in fine.particles.iter().zip(fine.at()).enumerate() {
+    for (index, (&point, &at)) in fine.particles.iter().zip(&fine.at).enumerate() {
         let on_first = match (side, first.is_ring || second.is_ring) {
             (0, _) => at,
             (_, true) => back.of(at).rem_euclid(1.0),
@@ -135,7 +135,7 @@ fn onto_nearest(side: usize, sides: [&SewnSide; 2], places: [&[Vec3]; 2]) -> Vec
             let mut before = 0.0;
             let mut stitches = Vec::new();
             for line in lines {
-                for (index, (&point, at)) in line.particles.iter().zip(line.at()).enumerate() {
+                for (index, (&point, at)) in line.particles.iter().zip(&line.at).enumerate() {
                     let at = (before + at * line.length) / total.max(f32::MIN_POSITIVE);
                     stitches.extend(stitch(point, at, line.share(index)));
                 }

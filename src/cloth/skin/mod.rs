@@ -163,19 +163,10 @@ impl ClothSkin {
         let share = |v: f32| (0.0..=1.0).contains(&v);
         QuantityError::check(self.blend, share, "the skin's blend", "from 0 to 1")?;
         let positive = |v: f32| v > 0.0;
-        QuantityError::check(
-            self.teleport_distance,
-            positive,
-            "the skin's teleport distance (m)",
-            "positive",
-        )?;
+        let name = "the skin's teleport distance (m)";
+        QuantityError::check(self.teleport_distance, positive, name, "positive")?;
         if let Some(backstop) = &self.backstop {
-            QuantityError::check(
-                backstop.radius,
-                |v| v > 0.0 && v.is_finite(),
-                "the backstop's radius (m)",
-                "positive and finite",
-            )?;
+            QuantityError::positive(backstop.radius, "the backstop's radius (m)")?;
         }
         Ok(())
     }

@@ -1,7 +1,5 @@
 //! Values for each particle.
 
-use std::{fmt, sync::Arc};
-
 use bevy::{
     math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
@@ -9,6 +7,7 @@ use bevy::{
 use thiserror::Error;
 
 use crate::cloth::{
+    function::define_function,
     quantity::QuantityError,
     surface::{Surface, VertexAttribute},
 };
@@ -47,34 +46,12 @@ pub enum ClothPaint {
     Vertices(Vec<f32>),
 }
 
-/// A function of a particle's position at rest, in the entity's frame (m), before the transform's scale. The default
-/// returns 0.
-#[derive(Clone)]
-pub struct RestFunction(Arc<dyn Fn(Vec3) -> f32 + Send + Sync>);
-
-impl RestFunction {
+define_function! {
+    /// A function of a particle's position at rest, in the entity's frame (m), before the transform's scale. The default
+    /// returns 0.
+    RestFunction,
     /// Wraps a function of the position at rest.
-    pub fn new(of: impl Fn(Vec3) -> f32 + Send + Sync + 'static) -> Self {
-        Self(Arc::new(of))
-    }
-}
-
-impl Default for RestFunction {
-    fn default() -> Self {
-        Self::new(|_| 0.0)
-    }
-}
-
-impl fmt::Debug for RestFunction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("..")
-    }
-}
-
-impl PartialEq for RestFunction {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
+    of(place: Vec3) -> f32, 0.0
 }
 
 impl Default for ClothPaint {
@@ -168,9 +145,9 @@ impl ClothPaint {
                     if value == 0.0 { 0.0 } else { value * scale }
                 })
                 .collect(),
-            Self::AtRest(RestFunction(of)) => surface
+            Self::AtRest(function) => surface
                 .whole_positions()
-                .map(|place| of(place / surface.scale()))
+                .map(|place| function.of(place / surface.scale()))
                 .collect(),
             Self::Vertices(values) => of_vertices(surface, values)?,
         };

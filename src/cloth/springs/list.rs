@@ -9,17 +9,6 @@ use crate::cloth::{
     surface::Chains,
 };
 
-/// The compliances of springs along the rows, columns and diagonals of a grid (m/N), particle by particle.
-#[derive(Debug)]
-pub(crate) struct GridCompliances {
-    /// To the right, and down.
-    pub across: Vec<f32>,
-    pub down: Vec<f32>,
-    /// To the right in the row below, and in the row above.
-    pub falling: Vec<f32>,
-    pub rising: Vec<f32>,
-}
-
 /// Springs between arbitrary particles, colour by colour.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct SpringList {
@@ -68,29 +57,25 @@ impl SpringList {
     }
 
     /// The compliances of the springs along a grid (m/N), by the particle that each begins at; NaN where there is none.
-    pub fn on_grid(&self, grid: &ClothGrid) -> GridCompliances {
+    /// They lead to the right, down, and to the right in the row below and in the row above.
+    pub fn on_grid(&self, grid: &ClothGrid) -> [Vec<f32>; 4] {
         let columns = grid.columns();
-        let none = || vec![f32::NAN; grid.len()];
-        let mut of = GridCompliances {
-            across: none(),
-            down: none(),
-            falling: none(),
-            rising: none(),
-        };
+        let [mut across, mut down, mut falling, mut rising] =
+            [(); 4].map(|()| vec![f32::NAN; grid.len()]);
         let is_on_grid = |spring: &&Spring| spring.ends.iter().all(|end| *end < grid.len() as u32);
         for spring in self.springs.iter().filter(is_on_grid) {
             let [a, b] = spring.ends;
             let [upper, lower] = [a.min(b), a.max(b)];
             let is_across = upper / columns == lower / columns;
             let (kind, begin) = match (upper % columns).cmp(&(lower % columns)) {
-                _ if is_across => (&mut of.across, upper),
-                Ordering::Equal => (&mut of.down, upper),
-                Ordering::Less => (&mut of.falling, upper),
-                Ordering::Greater => (&mut of.rising, lower),
+                _ if is_across => (&mut across, upper),
+                Ordering::Equal => (&mut down, upper),
+                Ordering::Less => (&mut falling, upper),
+                Ordering::Greater => (&mut rising, lower),
             };
             kind[begin as usize] = spring.compliance;
         }
-        of
+        [across, down, falling, rising]
     }
 
     /// The springs of the particles from this one on, whose ends are numbers in the list of particles that is returned, too.

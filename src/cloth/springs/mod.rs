@@ -28,9 +28,7 @@ pub(crate) use stiffness::StiffnessFactors;
 #[type_path = "bevy_drape"]
 #[reflect(opaque)]
 #[reflect(Default, Debug, Clone, PartialEq)]
-pub struct Springs {
-    storage: SpringStorage,
-}
+pub struct Springs(SpringStorage);
 
 /// Storage of springs.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,9 +123,7 @@ impl Springs {
             structural: material.stretch_compliances(),
             shear: material.shear_compliance,
         };
-        Self {
-            storage: SpringStorage::Grid(*grid, compliances),
-        }
+        Self(SpringStorage::Grid(*grid, compliances))
     }
 
     /// Springs between any of `particles` particles. Each takes the first colour that is free at both of its ends. With
@@ -155,9 +151,7 @@ impl Springs {
         }
         let mut list = SpringList::default();
         list.add(springs, particles);
-        Ok(Self {
-            storage: SpringStorage::List(Arc::new(list)),
-        })
+        Ok(Self(SpringStorage::List(Arc::new(list))))
     }
 
     /// The springs of a surface. For a surface made from a grid, [those of the grid](Self::of_grid).
@@ -218,14 +212,12 @@ impl Springs {
             };
             list.chains = chains.renamed(|edge| places[edge as usize]);
         }
-        Self {
-            storage: SpringStorage::List(Arc::new(list)),
-        }
+        Self(SpringStorage::List(Arc::new(list)))
     }
 
     /// Calls `visit` with each spring and the index of its colour, in the order of the sweep.
     pub fn for_each(&self, mut visit: impl FnMut(usize, Spring)) {
-        match &self.storage {
+        match &self.0 {
             SpringStorage::Grid(grid, compliances) => {
                 let strip = Layout::new(grid.columns(), grid.rows()).strip;
                 for (colour, (step, part)) in GRID_COLOURS.into_iter().enumerate() {
@@ -258,7 +250,7 @@ impl Springs {
 
     /// Number of springs.
     pub fn len(&self) -> usize {
-        match &self.storage {
+        match &self.0 {
             SpringStorage::Grid(grid, compliances) => {
                 let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
                 let along = [
@@ -269,12 +261,8 @@ impl Springs {
                     if compliance.is_finite() { count } else { 0 }
                 };
                 let [across, down] = [0, 1].map(|at| there(compliances.structural[at], along[at]));
-                across
-                    + down
-                    + there(
-                        compliances.shear,
-                        2 * columns.saturating_sub(1) * rows.saturating_sub(1),
-                    )
+                let cells = columns.saturating_sub(1) * rows.saturating_sub(1);
+                across + down + there(compliances.shear, 2 * cells)
             }
             SpringStorage::List(list) => list.springs.len(),
         }
@@ -287,7 +275,7 @@ impl Springs {
 
     /// Whether there are springs of `kind`.
     pub fn has(&self, kind: SpringKind) -> bool {
-        match &self.storage {
+        match &self.0 {
             SpringStorage::Grid(_, compliances) => match kind {
                 SpringKind::Structural => compliances.structural.iter().any(|of| of.is_finite()),
                 SpringKind::Shear => compliances.shear.is_finite(),
@@ -299,7 +287,7 @@ impl Springs {
 
     /// Whether they are solved as rows, columns and diagonals: those of a grid, torn or mapped or not, without a knee.
     pub(crate) fn are_of_grid(&self) -> bool {
-        match &self.storage {
+        match &self.0 {
             SpringStorage::Grid(..) => true,
             SpringStorage::List(list) => list.grid.is_some(),
         }
@@ -307,7 +295,7 @@ impl Springs {
 
     /// The storage, for the solver.
     pub(crate) fn storage(&self) -> &SpringStorage {
-        &self.storage
+        &self.0
     }
 }
 

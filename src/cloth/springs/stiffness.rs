@@ -23,11 +23,6 @@ impl StiffnessFactors {
         (a + b) / 2.0
     }
 
-    /// The factor of a face's flexural rigidity.
-    pub fn of_face(&self, face: [u32; 3]) -> f32 {
-        self.mean_bending(&face)
-    }
-
     /// The mean factor of the flexural rigidity at some particles.
     pub fn mean_bending(&self, particles: &[u32]) -> f32 {
         let of = |particle: &u32| self.bending.get(*particle as usize).copied();

@@ -2,7 +2,7 @@
 
 use bevy::math::{UVec2, Vec3};
 
-use super::{Derived, Extent, Spacing, Surface};
+use super::{Extent, Spacing, Surface};
 use crate::cloth::grid::ClothGrid;
 
 impl Surface {
@@ -15,8 +15,8 @@ impl Surface {
 
     /// The surface of a grid whose particles begin at other places than the grid's (m), with one normal for all, or one for each.
     pub(crate) fn of_placed_grid(grid: &ClothGrid, rest: Vec<Vec3>, normals: Vec<Vec3>) -> Self {
-        let cells = || grid.cells();
         let spacing = grid.spacing();
+        let areas = (grid.cells()).map(|(row, column)| grid.tributary_area(row, column));
         let sides = UVec2::new(grid.columns(), grid.rows()).saturating_sub(UVec2::ONE);
         let of_faces = Extent {
             diagonal: grid.diagonal(),
@@ -44,15 +44,8 @@ impl Surface {
         };
         Self {
             rest,
-            areas: cells()
-                .map(|(row, column)| grid.tributary_area(row, column))
-                .collect(),
+            areas: areas.collect(),
             normals,
-            particle_of_vertex: None,
-            attributes: Vec::new(),
-            links: Vec::new(),
-            grain: Vec::new(),
-            is_border: Vec::new(),
             scale: grid.scale(),
             spacing: Spacing {
                 shortest,
@@ -61,8 +54,7 @@ impl Surface {
             },
             extent,
             grid: Some(*grid),
-            torn: None,
-            derived: Derived::default(),
+            ..Self::default()
         }
     }
 }

@@ -7,7 +7,7 @@ use bevy::math::Vec3;
 use super::{
     Derived, Extent, Spacing, Surface,
     calibration::calibrate,
-    faces::Faces,
+    faces::{Faces, first_corner},
     graph::Graph,
     orientation::orient,
     springs::{Side, face_area, has_area, links, sides, sides_of},
@@ -49,13 +49,7 @@ impl Surface {
 }
 
 fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), MeshError> {
-    let range = "zero or more, and finite";
-    QuantityError::check(
-        weld,
-        |w| w >= 0.0 && w.is_finite(),
-        "weld distance (m)",
-        range,
-    )?;
+    QuantityError::not_negative(weld, "weld distance (m)")?;
     let vertices = mesh.positions.len();
     // A particle usually has a few vertices; far too many are rejected before welding.
     if vertices > 8 * MAX_MESH_PARTICLES {
@@ -213,7 +207,7 @@ impl Welded {
         let (areas, area) = self.areas();
         let pieces = self.pieces;
         let particles = self.rest.len();
-        let faces = Faces::by_first_corner(self.faces, particles);
+        let faces = Faces::by_first_corner(&self.faces, particles);
         let normals = normals(faces.all(), &self.rest);
         let mut links = links(faces.all(), &sides, &self.rest);
         let is_border = borders(&sides, particles);
@@ -260,7 +254,6 @@ impl Welded {
             particle_of_vertex: Some(self.particle_of),
             attributes,
             links,
-            grain: Vec::new(),
             is_border,
             scale,
             spacing,
@@ -273,13 +266,12 @@ impl Welded {
                 max_faces: max_faces(faces.all(), particles),
                 pieces,
             },
-            grid: None,
-            torn: None,
             derived: Derived {
                 uvs: OnceLock::from(uvs),
                 faces: OnceLock::from(faces),
                 ..Derived::default()
             },
+            ..Surface::default()
         }
     }
 }
@@ -331,10 +323,6 @@ fn borders(sides: &[Side], particles: usize) -> Vec<bool> {
             .for_each(|end| is_border[*end as usize] = true);
     }
     is_border
-}
-
-fn first_corner(face: &[u32; 3]) -> u32 {
-    face[0].min(face[1]).min(face[2])
 }
 
 /// Drops all but the first of several faces between the same three particles.

@@ -15,9 +15,10 @@ pub(super) fn uvs(grid: &ClothGrid) -> Vec<Vec2> {
 /// Two faces for each cell, owned by its first particle.
 pub(super) fn faces(grid: &ClothGrid) -> Faces {
     let begins_cell =
-        |(row, column): (u32, u32)| row + 1 < grid.rows() && column + 1 < grid.columns();
-    let counts = grid.cells().map(|cell| 2 * u32::from(begins_cell(cell)));
-    Faces::new(grid.triangles().collect(), counts)
+        |(row, column): &(u32, u32)| row + 1 < grid.rows() && column + 1 < grid.columns();
+    let cells = || grid.cells().filter(begins_cell);
+    let owners = || cells().flat_map(|(row, column)| [grid.index(row, column); 2]);
+    Faces::new(grid.len(), || owners().zip(grid.triangles()))
 }
 
 /// Neighbours in rows, columns and along both diagonals.

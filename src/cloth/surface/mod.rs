@@ -185,11 +185,8 @@ impl Surface {
 
     /// Number of vertices that the surface was made from, before it was torn.
     pub fn vertices(&self) -> usize {
-        match (&self.particle_of_vertex, &self.torn) {
-            (Some(particles), _) => particles.len(),
-            (None, Some(torn)) => torn.whole_len(),
-            (None, None) => self.len(),
-        }
+        let particles = self.particle_of_vertex.as_ref();
+        particles.map_or(self.before_tears().len(), Vec::len)
     }
 
     /// The particle of a vertex that the surface was made from. `None` if no triangle with an area uses the vertex.
@@ -277,20 +274,22 @@ impl Surface {
         &self.links
     }
 
+    /// The links along edges of a mesh.
+    fn edges(&self) -> impl Iterator<Item = &Link> + Clone {
+        let links = self.links.iter();
+        links.filter(|link| link.kind == SpringKind::Structural)
+    }
+
     /// Texture coordinates of each particle; empty if there are none.
     pub fn uvs(&self) -> &[Vec2] {
-        self.derived.uvs.get_or_init(|| {
-            let grid = self.grid.as_ref();
-            grid.map_or_else(Vec::new, grid::uvs)
-        })
+        let of_grid = || self.grid.as_ref().map(grid::uvs);
+        (self.derived.uvs).get_or_init(|| of_grid().unwrap_or_default())
     }
 
     /// Its faces, by their owners.
     pub(crate) fn faces(&self) -> &Faces {
-        self.derived.faces.get_or_init(|| {
-            let grid = self.grid.as_ref();
-            grid.map_or_else(Faces::default, grid::faces)
-        })
+        let of_grid = || self.grid.as_ref().map(grid::faces);
+        (self.derived.faces).get_or_init(|| of_grid().unwrap_or_default())
     }
 
     /// Where the corners of its faces are, by their owners.
@@ -316,9 +315,8 @@ impl Surface {
         self.derived.graph.get_or_init(|| match &self.grid {
             Some(grid) => grid::graph(grid),
             None => {
-                let edges = self.links.iter();
-                let edges = edges.filter(|link| link.kind == SpringKind::Structural);
-                Graph::new(self.len(), edges.map(|link| (link.ends, link.rest_length)))
+                let edges = self.edges().map(|link| (link.ends, link.rest_length));
+                Graph::new(self.len(), edges)
             }
         })
     }
@@ -330,10 +328,8 @@ impl Surface {
 
     /// The same along those links alone that have an end from this particle on.
     pub(crate) fn chains_beyond(&self, first: u32) -> Chains {
-        let links = self.links.iter();
-        let structural = links.filter(|link| link.kind == SpringKind::Structural);
         let is_beyond = |[a, b]: [u32; 2]| a.max(b) >= first;
-        let chosen = (0_u32..).zip(structural.map(|link| link.ends));
+        let chosen = (0_u32..).zip(self.edges().map(|link| link.ends));
         let (numbers, edges): (Vec<u32>, Vec<[u32; 2]>) =
             chosen.filter(|(_, ends)| is_beyond(*ends)).unzip();
         let normal = |particle| self.normal_of(particle as usize);

@@ -8,14 +8,10 @@ pub(crate) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
     let size = 8.0 * weld;
     // −0 becomes 0.
     let cell = |place: Vec3| -> [u32; 3] {
-        if weld > 0.0 {
-            // Far from the origin, neighbouring cells may coincide: this adds comparisons and misses nothing.
-            ((place / size).floor() + Vec3::ZERO)
-                .to_array()
-                .map(f32::to_bits)
-        } else {
-            (place + Vec3::ZERO).to_array().map(f32::to_bits)
-        }
+        // Far from the origin, neighbouring cells may coincide: this adds comparisons and misses nothing.
+        let coarse = (place / size).floor();
+        let cell = if weld > 0.0 { coarse } else { place };
+        (cell + Vec3::ZERO).to_array().map(f32::to_bits)
     };
     // The last position in each cell, and the one before it.
     let mut cells: HashMap<[u32; 3], u32> = HashMap::default();

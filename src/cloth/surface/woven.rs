@@ -141,25 +141,17 @@ impl Surface {
             }
             return;
         }
-        let threads = self
-            .links
-            .iter()
-            .filter(|link| link.kind == SpringKind::Structural);
         if self.grain.is_empty() {
-            return threads.for_each(|link| visit(link.ends, link.rest_length, 1.0));
+            return (self.edges()).for_each(|link| visit(link.ends, link.rest_length, 1.0));
         }
         let along_warp = self.derived.along_warp.get_or_init(|| self.along_warp());
-        for (link, along_warp) in threads.zip(along_warp) {
+        for (link, along_warp) in self.edges().zip(along_warp) {
             visit(link.ends, link.rest_length, *along_warp);
         }
     }
 
     /// The square of the cosine between each edge of a mesh and the warp beside it, in the order of its links.
     fn along_warp(&self) -> Vec<f32> {
-        let threads = self
-            .links
-            .iter()
-            .filter(|link| link.kind == SpringKind::Structural);
         let of_link = |link: &Link| {
             let [a, b] = link.ends.map(|end| self.rest[end as usize]);
             let direction = (b - a).normalize_or_zero();
@@ -167,7 +159,7 @@ impl Surface {
             let cosine = beside.map_or(1.0, |side| self.grain[side.face as usize].dot(direction));
             (cosine * cosine).min(1.0)
         };
-        threads.map(of_link).collect()
+        self.edges().map(of_link).collect()
     }
 
     /// The springs of a mesh whose weft is t⁴ times as compliant as its warp; `None` if they are the usual

@@ -178,18 +178,12 @@ fn descend(
     found: &mut SearchBuffers,
     touches: impl Fn(usize, [u32; 2], &Part, &Part) -> bool,
 ) {
-    let SearchBuffers {
-        visits,
-        is_silent,
-        frontier: [here, next],
-        candidates,
-        leaf_tests,
-    } = found;
+    let [here, next] = &mut found.frontier;
     here.clear();
     here.push([0, 1, 0, 1]);
     let leaves = tree.levels.len() - 1;
     for (level, parts) in tree.levels.iter().enumerate() {
-        let before = visits.len();
+        let before = found.visits.len();
         next.clear();
         for &[first_row, end_row, first_column, end_column] in here.iter() {
             for (row, rows) in (first_row..end_row).zip(&parts.rows[first_row as usize..]) {
@@ -197,20 +191,20 @@ fn descend(
                     (first_column..end_column).zip(&parts.columns[first_column as usize..])
                 {
                     let touching = touches(level, [row, column], rows, columns);
-                    if !*is_silent {
-                        visits.push((parts.index(row, column), touching));
+                    if !found.is_silent {
+                        found.visits.push((parts.index(row, column), touching));
                     }
                     if touching && level < leaves {
                         let (below, beside) = (&rows.children, &columns.children);
                         next.push([below.start, below.end, beside.start, beside.end]);
                     } else if touching && probe.meets(middle(particles, rows, columns)) {
-                        candidates.push(rows.middle * tree.layout.columns + columns.middle);
+                        (found.candidates).push(rows.middle * tree.layout.columns + columns.middle);
                     }
                 }
             }
         }
         if level == leaves {
-            *leaf_tests += visits.len() - before;
+            found.leaf_tests += found.visits.len() - before;
         }
         std::mem::swap(here, next);
     }

@@ -6,17 +6,17 @@ use bevy::math::{
 };
 
 use super::{
-    bounding::{Lane, Volume},
+    bounding::Volume,
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, MapInline, View, X, Y, Z},
+    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, least, most},
     hierarchy::probe::{Core, Probe, ROUNDING},
 };
 
 impl Volume for Aabb3d {
     /// Minimum and maximum coordinates.
-    type Lanes = [[Lane; 3]; 2];
+    type Lanes = [[Lanes; 3]; 2];
 
     const UNSET: Self::Lanes = [[[0.0; LANES]; 3]; 2];
 
@@ -52,11 +52,7 @@ impl Volume for Aabb3d {
             }
             Core::Segment([start, end]) => {
                 // A ball around the segment as well: it is tighter for a collider that moves less than its size.
-                let ball = Probe::ball(
-                    start.midpoint(end),
-                    reach + start.distance(end) / 2.0 * ROUNDING,
-                    0.0,
-                );
+                let ball = slabs::ball_around(start, end, reach);
                 self.may_reach(&ball, ball.radius) && slabs_may_reach(self, probe, reach)
             }
             Core::Cuboid { .. } => slabs_may_reach(self, probe, reach),
@@ -64,10 +60,7 @@ impl Volume for Aabb3d {
     }
 
     fn holds(&self, centre: DVec3, radius: f64) -> bool {
-        let (min, max) = (
-            Vec3::from(self.min).as_dvec3(),
-            Vec3::from(self.max).as_dvec3(),
-        );
+        let [min, max] = [self.min, self.max].map(|corner| Vec3::from(corner).as_dvec3());
         (centre - radius).cmpge(min).all() && (centre + radius).cmple(max).all()
     }
 
@@ -103,7 +96,7 @@ impl Volume for Aabb3d {
 
     #[inline(always)]
     fn lane(lanes: &Self::Lanes, lane: usize) -> Self {
-        let corner = |side: &[Lane; 3]| Vec3A::new(side[0][lane], side[1][lane], side[2][lane]);
+        let corner = |side: &[Lanes; 3]| Vec3A::new(side[0][lane], side[1][lane], side[2][lane]);
         Self {
             min: corner(&lanes[0]),
             max: corner(&lanes[1]),
@@ -132,28 +125,16 @@ fn slabs_may_reach(aabb: &Aabb3d, probe: &Probe, reach: f32) -> bool {
 
 /// Eight numbers of a block from an offset on.
 #[inline(always)]
-pub(super) fn coordinates(view: &View, from: usize) -> &Lane {
+pub(super) fn coordinates(view: &View, from: usize) -> &Lanes {
     view[from..].first_chunk().expect("24 numbers")
 }
 
 /// The union of four intervals along an axis.
 #[inline(always)]
-pub(super) fn unite_slab(children: [(&Lane, &Lane); 4], low: &mut Lane, high: &mut Lane) {
+pub(super) fn unite_slab(children: [(&Lanes, &Lanes); 4], low: &mut Lanes, high: &mut Lanes) {
     let [a, b, c, d] = children;
     for l in 0..LANES {
         low[l] = least(least(a.0[l], b.0[l]), least(c.0[l], d.0[l]));
         high[l] = most(most(a.1[l], b.1[l]), most(c.1[l], d.1[l]));
     }
-}
-
-/// Compiles to one instruction.
-#[inline(always)]
-pub(super) fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// Compiles to one instruction.
-#[inline(always)]
-pub(super) fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }

@@ -4,10 +4,7 @@ use std::fmt::Debug;
 
 use bevy::math::{DVec3, Vec3};
 
-use crate::{
-    cloth::{LANES, View},
-    hierarchy::probe::Probe,
-};
+use crate::{cloth::View, hierarchy::probe::Probe};
 
 /// A bounding volume of a tree. It bounds the centres of particles; tests against it add their radius to the reach.
 pub(crate) trait Volume: Copy + Debug + PartialEq + Send + Sync + 'static {
@@ -52,6 +49,3 @@ pub(crate) trait Volume: Copy + Debug + PartialEq + Send + Sync + 'static {
     /// Sets the volume of a lane.
     fn set_lane(lanes: &mut Self::Lanes, lane: usize, volume: Self);
 }
-
-/// A number for each of eight nodes.
-pub(super) type Lane = [f32; LANES];

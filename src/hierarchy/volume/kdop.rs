@@ -3,12 +3,12 @@
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
-    aabb::{least, most, unite_slab},
-    bounding::{Lane, Volume},
+    aabb::unite_slab,
+    bounding::Volume,
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, MapInline, View, X, Y, Z},
+    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, least, most},
     hierarchy::probe::{Core, Probe},
 };
 
@@ -109,7 +109,7 @@ fn cut(corners: &[Vec3], normal: Vec3, distance: f32) -> Vec<Vec3> {
 
 impl<const N: usize> Volume for KDop<N> {
     /// Minimum and maximum of the dot products.
-    type Lanes = [[Lane; N]; 2];
+    type Lanes = [[Lanes; N]; 2];
 
     const UNSET: Self::Lanes = [[[0.0; LANES]; N]; 2];
 
@@ -189,7 +189,7 @@ impl<const N: usize> Volume for KDop<N> {
     #[inline(always)]
     fn of_particles(children: [&View; 4], [low, high]: &mut Self::Lanes) {
         let [a, b, c, d] = children;
-        let mut slack: Lane = [0.0; LANES];
+        let mut slack: Lanes = [0.0; LANES];
         for l in 0..LANES {
             let size =
                 |child: &View| (child[X + l].abs() + child[Y + l].abs()) + child[Z + l].abs();

@@ -32,14 +32,7 @@ impl Obb {
     /// Its extent from the middle along `axis`, times the axis' length (m).
     #[inline(always)]
     fn reach_along(&self, axis: Vec3) -> f32 {
-        let Mat3 {
-            x_axis,
-            y_axis,
-            z_axis,
-        } = self.axes;
-        Vec3::new(x_axis.dot(axis), y_axis.dot(axis), z_axis.dot(axis))
-            .abs()
-            .dot(self.half_size)
+        (self.axes.transpose() * axis).abs().dot(self.half_size)
     }
 
     /// Length (m) that determines the rounding errors of its sides.
@@ -57,12 +50,7 @@ impl Obb {
                 high: middle + half,
             }
         };
-        let Mat3 {
-            x_axis,
-            y_axis,
-            z_axis,
-        } = self.axes;
-        let slabs = [x_axis, y_axis, z_axis].into_iter().map(slab);
+        let slabs = (0..3).map(|at| slab(self.axes.col(at)));
         slabs::may_reach(slabs, probe, reach, 3.0 * self.size())
     }
 
@@ -110,11 +98,7 @@ impl Volume for Obb {
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
         for child in children {
             let middle = axes.transpose() * (child.centre - origin);
-            let reach = Vec3::new(
-                child.reach_along(axes.x_axis),
-                child.reach_along(axes.y_axis),
-                child.reach_along(axes.z_axis),
-            );
+            let reach = Vec3::from([0, 1, 2].map_inline(|at| child.reach_along(axes.col(at))));
             (low, high) = (low.min(middle - reach), high.max(middle + reach));
         }
         let centre = origin + axes * low.midpoint(high);
@@ -143,11 +127,7 @@ impl Volume for Obb {
             }
             Core::Segment([start, end]) => {
                 // A ball around the segment as well: it is tighter for a collider that moves less than its size.
-                let ball = Probe::ball(
-                    start.midpoint(end),
-                    reach + start.distance(end) / 2.0 * ROUNDING,
-                    0.0,
-                );
+                let ball = slabs::ball_around(start, end, reach);
                 self.may_reach(&ball, ball.radius) && self.slabs_may_reach(probe, reach)
             }
             Core::Cuboid { .. } => self.slabs_may_reach(probe, reach),
@@ -165,20 +145,12 @@ impl Volume for Obb {
     }
 
     fn holds_volume(&self, other: &Self) -> bool {
-        let Mat3 {
-            x_axis,
-            y_axis,
-            z_axis,
-        } = self.axes;
-        [x_axis, y_axis, z_axis]
-            .into_iter()
-            .zip(self.half_size.to_array())
-            .all(|(axis, half)| {
-                let middle =
-                    (other.centre.as_dvec3() - self.centre.as_dvec3()).dot(axis.as_dvec3());
-                middle.abs() as f32 + other.reach_along(axis)
-                    <= half * ROUNDING + self.half_size.max_element() * 1.0e-6
-            })
+        let offset = other.centre.as_dvec3() - self.centre.as_dvec3();
+        (0..3).all(|at| {
+            let (axis, half) = (self.axes.col(at), self.half_size[at]);
+            offset.dot(axis.as_dvec3()).abs() as f32 + other.reach_along(axis)
+                <= half * ROUNDING + self.half_size.max_element() * 1.0e-6
+        })
     }
 
     fn inflated(&self, radius: f32) -> Self {

@@ -53,3 +53,9 @@ pub fn may_reach_half_space(point: Vec3, normal: Vec3, low: Vec3, high: Vec3, re
     let slack = (offset.length() + nearest.length()) * 1.0e-6;
     offset.dot(normal) <= reach * ROUNDING + slack
 }
+
+/// A ball around all that is within reach of a segment: a volume beyond it needs no test against slabs.
+pub fn ball_around(start: Vec3, end: Vec3, reach: f32) -> Probe {
+    let radius = reach + start.distance(end) / 2.0 * ROUNDING;
+    Probe::ball(start.midpoint(end), radius, 0.0)
+}

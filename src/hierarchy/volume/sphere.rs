@@ -2,12 +2,9 @@
 
 use bevy::math::{DVec3, Vec3, Vec3A, bounding::BoundingSphere, primitives::Sphere};
 
-use super::{
-    aabb::most,
-    bounding::{Lane, Volume},
-};
+use super::bounding::Volume;
 use crate::{
-    cloth::{LANES, MapInline, View, X, Y, Z},
+    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, most},
     hierarchy::probe::{Probe, ROUNDING},
 };
 
@@ -16,7 +13,7 @@ const LEVEL_ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 impl Volume for BoundingSphere {
     /// Centre and radius.
-    type Lanes = [Lane; 4];
+    type Lanes = [Lanes; 4];
 
     const UNSET: Self::Lanes = [[0.0; LANES]; 4];
 

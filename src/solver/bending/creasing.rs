@@ -59,13 +59,8 @@ impl ClothCreasing {
     /// [`QuantityError`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
         let is_positive = |of: f32| of > 0.0 && of.is_finite();
-        let name = "yield curvature (1/m)";
-        QuantityError::check(
-            self.yield_curvature,
-            is_positive,
-            name,
-            "positive, and finite",
-        )?;
+        let (name, range) = ("yield curvature (1/m)", "positive, and finite");
+        QuantityError::check(self.yield_curvature, is_positive, name, range)?;
         let is_part = |of: f32| (0.0..1.0).contains(&of);
         let name = "hardening of creases";
         QuantityError::check(self.hardening, is_part, name, "from 0 to less than 1")?;
@@ -92,6 +87,19 @@ impl ClothCreasing {
             0.0
         }
     }
+}
+
+/// Replaces rest curvatures, with 0 if their number differs. Returns whether they change.
+pub(super) fn recall(own: &mut [f32], rest: &[f32]) -> bool {
+    if own == rest {
+        return false;
+    }
+    if own.len() == rest.len() {
+        own.copy_from_slice(rest);
+    } else {
+        own.fill(0.0);
+    }
+    true
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::{
     chains::ChainBending,
-    creasing::ClothCreasing,
     grid_creases::GridCreases,
     plate::Plate,
     push::{LIMIT, Push},
@@ -22,7 +21,7 @@ pub(super) struct GridBending {
     push: Push,
     /// From when it first may be needed.
     chains: Option<ChainBending>,
-    creases: Option<Box<GridCreases>>,
+    pub creases: Option<Box<GridCreases>>,
     weight: f32,
     is_soft: bool,
 }
@@ -57,41 +56,29 @@ impl GridBending {
     }
 
     pub fn solve(&mut self, blocks: &mut [Block], kernels: &Kernels) {
-        match &mut self.creases {
-            Some(_) => self.solve_creased(blocks, kernels),
-            None => self.solve_flat(blocks, kernels),
+        let weight = self.weight;
+        if let Some(creases) = &mut self.creases {
+            creases.aim(blocks, 1.0);
         }
-    }
-
-    fn solve_flat(&mut self, blocks: &mut [Block], kernels: &Kernels) {
-        match &mut self.chains {
-            Some(chains) if !self.is_soft => chains.solve(blocks, kernels, |_, _| {}),
-            _ => self.push.apply(blocks, 1.0, self.weight, kernels),
-        }
-    }
-
-    fn solve_creased(&mut self, blocks: &mut [Block], kernels: &Kernels) {
-        let Some(creases) = &mut self.creases else {
-            return;
+        let push = |family, blocks: &mut [Block]| {
+            if let Some(creases) = &self.creases {
+                creases.push(family, weight, blocks);
+            }
         };
-        creases.aim(blocks, 1.0);
         match &mut self.chains {
             Some(chains) if !self.is_soft => {
-                let weight = self.weight;
-                chains.solve(blocks, kernels, |family, blocks| {
-                    creases.push(Some(family), weight, blocks);
-                });
+                chains.solve(blocks, kernels, |family, blocks| push(Some(family), blocks));
             }
             _ => {
-                self.push.apply(blocks, 1.0, self.weight, kernels);
-                creases.push(None, self.weight, blocks);
+                self.push.apply(blocks, 1.0, weight, kernels);
+                push(None, blocks);
             }
         }
     }
 
-    /// The longest sub-step in which it is soft enough to be pushed (s).
-    pub fn longest_push(&self, blocks: &[Block]) -> f32 {
-        (LIMIT / self.push.bound(blocks, 1.0)).sqrt()
+    /// The bound of pushes with a weight of 1 s².
+    pub fn bound(&self, blocks: &[Block]) -> f32 {
+        self.push.bound(blocks, 1.0)
     }
 
     /// Adds what the forces at the positions make of displacements with this weight (s²).
@@ -104,24 +91,14 @@ impl GridBending {
         self.push.apply(blocks, 0.0, weight, kernels);
     }
 
-    /// Has it crease from now on, or not any more.
-    pub fn set_creasing(&mut self, grid: &ClothGrid, creasing: Option<ClothCreasing>) {
-        match (creasing, &mut self.creases) {
-            (Some(creasing), Some(known)) => known.set(creasing),
-            (Some(creasing), none) => {
-                let new = GridCreases::new(grid, &self.plate, creasing);
-                *none = Some(Box::new(new));
-            }
-            (None, known) => *known = None,
+    /// Lets it crease, or forgets its creases.
+    pub fn set_creasing(&mut self, grid: &ClothGrid, creases: bool) {
+        if creases {
+            let new = || Box::new(GridCreases::new(grid, &self.plate));
+            self.creases.get_or_insert_with(new);
+        } else {
+            self.creases = None;
         }
-    }
-
-    pub fn creases(&self) -> Option<&GridCreases> {
-        self.creases.as_deref()
-    }
-
-    pub fn creases_mut(&mut self) -> Option<&mut GridCreases> {
-        self.creases.as_deref_mut()
     }
 
     /// Whether forces push it, as it was prepared.

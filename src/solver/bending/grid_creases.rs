@@ -9,7 +9,10 @@
 
 use bevy::math::Vec3;
 
-use super::{creasing::ClothCreasing, plate::Plate};
+use super::{
+    creasing::{ClothCreasing, recall},
+    plate::Plate,
+};
 use crate::cloth::{Block, ClothGrid, DX, DY, DZ, Layout, MapInline, Slot, W};
 
 /// What stencils are solved together, in their order.
@@ -60,7 +63,6 @@ struct Crease {
 /// The rest curvatures of a grid.
 #[derive(Debug, Clone)]
 pub(super) struct GridCreases {
-    creasing: ClothCreasing,
     plate: Plate,
     spacing: [f32; 2],
     slots: Vec<Slot>,
@@ -75,10 +77,9 @@ pub(super) struct GridCreases {
 }
 
 impl GridCreases {
-    pub fn new(grid: &ClothGrid, plate: &Plate, creasing: ClothCreasing) -> Self {
+    pub fn new(grid: &ClothGrid, plate: &Plate) -> Self {
         let layout = plate.layout;
         Self {
-            creasing,
             plate: plate.clone(),
             spacing: grid.spacing().to_array(),
             slots: layout.slots().collect(),
@@ -91,26 +92,15 @@ impl GridCreases {
         }
     }
 
-    pub fn set(&mut self, creasing: ClothCreasing) {
-        self.creasing = creasing;
-    }
-
     pub fn rest(&self) -> &[f32] {
         self.rest.as_flattened()
     }
 
     /// Takes over rest curvatures; none where there are those of another surface.
     pub fn recall(&mut self, rest: &[f32]) {
-        let own = self.rest.as_flattened_mut();
-        if own == rest {
-            return;
+        if recall(self.rest.as_flattened_mut(), rest) {
+            self.gather();
         }
-        if own.len() == rest.len() {
-            own.copy_from_slice(rest);
-        } else {
-            own.fill(0.0);
-        }
-        self.gather();
     }
 
     /// Gathers the stencils with a crease, family by family.
@@ -183,7 +173,7 @@ impl GridCreases {
     }
 
     /// Has rest curvatures follow where the cloth is bent beyond its yield curvature.
-    pub fn flow(&mut self, blocks: &[Block]) {
+    pub fn flow(&mut self, creasing: &ClothCreasing, blocks: &[Block]) {
         self.load(blocks, 0.0);
         let Layout { columns, rows, .. } = self.plate.layout;
         for (at, trial) in self.trials.iter_mut().enumerate() {
@@ -191,7 +181,7 @@ impl GridCreases {
             for (kind, trial) in trial.iter_mut().enumerate() {
                 let stencil = Stencil::new(&self.plate, kind, row, column);
                 let curvature = stencil.curvature(&self.places, self.spacing);
-                *trial = self.creasing.trial(curvature, self.rest[at][kind]);
+                *trial = creasing.trial(curvature, self.rest[at][kind]);
             }
         }
         let mut has_flowed = false;
@@ -210,7 +200,7 @@ impl GridCreases {
                     cells += 1.0;
                 }
             }
-            let flow = self.creasing.flow(bent(own) + twisted / cells.max(1.0));
+            let flow = creasing.flow(bent(own) + twisted / cells.max(1.0));
             let mut flows = [flow, flow, 0.0];
             if own[TWIST] != 0.0 {
                 let corner = |down: u32, right: u32| {
@@ -218,7 +208,7 @@ impl GridCreases {
                 };
                 let bent = corner(0, 0) + corner(0, 1) + corner(1, 0) + corner(1, 1);
                 let twisted = 2.0 * own[TWIST] * own[TWIST];
-                flows[TWIST] = self.creasing.flow(bent / 4.0 + twisted);
+                flows[TWIST] = creasing.flow(bent / 4.0 + twisted);
             }
             let [wide, high] = self.spacing;
             let most = [2.0 / wide, 2.0 / high, 2.0 / (wide * high).sqrt()];

@@ -25,7 +25,6 @@ use std::sync::Arc;
 use bevy::math::{Vec3A, Vec4};
 
 use super::{
-    creasing::ClothCreasing,
     mesh_creases::MeshCreases,
     mesh_matrix::MeshMatrix,
     patch::frame,
@@ -62,7 +61,7 @@ struct Row {
 pub(super) struct MeshBending {
     layout: Layout,
     matrix: Arc<MeshMatrix>,
-    creases: Option<Box<MeshCreases>>,
+    pub creases: Option<Box<MeshCreases>>,
     /// Sum of the absolute values of each particle's row (N/m), by block.
     bounds: Arc<[Lanes]>,
     /// s (s²).
@@ -135,11 +134,6 @@ impl MeshBending {
                 *place = [position.extend(0.0), moved.extend(0.0)];
             }
         }
-    }
-
-    /// The longest sub-step in which it is soft enough to be pushed (s).
-    pub fn longest_push(&self, blocks: &[Block]) -> f32 {
-        (LIMIT / self.bound(blocks)).sqrt()
     }
 
     /// Adds what the forces at the positions make of displacements with this weight (s²).
@@ -254,41 +248,29 @@ impl MeshBending {
         self.push_creases(1.0);
     }
 
-    /// Has it crease from now on, or not any more.
+    /// Lets it crease, or forgets its creases.
     pub fn set_creasing(
         &mut self,
         surface: &Surface,
         rigidity: Woven,
         factors: &StiffnessFactors,
-        creasing: Option<ClothCreasing>,
+        creases: bool,
     ) {
-        match (creasing, &mut self.creases) {
-            (Some(creasing), Some(known)) => known.set(creasing),
-            (Some(creasing), none) => {
-                let new = MeshCreases::new(surface, rigidity, factors, creasing);
-                *none = Some(Box::new(new));
-            }
-            (None, known) => *known = None,
+        if creases {
+            let new = || Box::new(MeshCreases::new(surface, rigidity, factors));
+            self.creases.get_or_insert_with(new);
+        } else {
+            self.creases = None;
         }
-    }
-
-    pub fn creases(&self) -> Option<&MeshCreases> {
-        self.creases.as_deref()
-    }
-
-    pub fn creases_mut(&mut self) -> Option<&mut MeshCreases> {
-        self.creases.as_deref_mut()
     }
 
     /// `left` becomes s times the forces, 0 of pinned particles.
     fn set_right_side(&mut self) {
         self.set_forces();
         for row in &mut self.rows {
-            let is_free = row.mass > 0.0;
-            row.left = if is_free {
-                row.left * self.weight
-            } else {
-                Vec4::ZERO
+            row.left = match row.mass > 0.0 {
+                true => row.left * self.weight,
+                false => Vec4::ZERO,
             };
         }
     }

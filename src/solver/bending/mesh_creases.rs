@@ -7,7 +7,7 @@
 use bevy::math::{DVec3, Vec3, Vec3A};
 
 use super::{
-    creasing::ClothCreasing,
+    creasing::{ClothCreasing, recall},
     patch::{Patch, frame},
 };
 use crate::cloth::{Block, Layout, MapInline, StiffnessFactors, Surface, Woven};
@@ -105,7 +105,6 @@ impl Face {
 /// The rest curvatures of a mesh.
 #[derive(Debug, Clone)]
 pub(super) struct MeshCreases {
-    creasing: ClothCreasing,
     layout: Layout,
     /// None where a face has no other beside it.
     faces: Vec<Option<Face>>,
@@ -117,12 +116,7 @@ pub(super) struct MeshCreases {
 }
 
 impl MeshCreases {
-    pub fn new(
-        surface: &Surface,
-        rigidity: Woven,
-        factors: &StiffnessFactors,
-        creasing: ClothCreasing,
-    ) -> Self {
+    pub fn new(surface: &Surface, rigidity: Woven, factors: &StiffnessFactors) -> Self {
         let places: Vec<DVec3> = surface
             .rest_positions()
             .iter()
@@ -137,12 +131,11 @@ impl MeshCreases {
                     .bending_grain(index)
                     .filter(|_| rigidity.ratio != 1.0);
                 let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
-                let rigidity = rigidity.mean * factors.of_face(*face);
+                let rigidity = rigidity.mean * factors.mean_bending(face);
                 Face::new(&patch, woven, rigidity, &places)
             }));
         }
         Self {
-            creasing,
             layout: surface.layout(),
             rest: vec![Curvature::default(); faces.len()],
             places: vec![Vec3::ZERO; places.len()],
@@ -151,26 +144,15 @@ impl MeshCreases {
         }
     }
 
-    pub fn set(&mut self, creasing: ClothCreasing) {
-        self.creasing = creasing;
-    }
-
     pub fn rest(&self) -> &[f32] {
         self.rest.as_flattened().as_flattened()
     }
 
     /// Takes over rest curvatures; none where there are those of another surface.
     pub fn recall(&mut self, rest: &[f32]) {
-        let own = self.rest.as_flattened_mut().as_flattened_mut();
-        if own == rest {
-            return;
+        if recall(self.rest.as_flattened_mut().as_flattened_mut(), rest) {
+            self.gather();
         }
-        if own.len() == rest.len() {
-            own.copy_from_slice(rest);
-        } else {
-            own.fill(0.0);
-        }
-        self.gather();
     }
 
     /// Whether no face has a crease.
@@ -202,7 +184,7 @@ impl MeshCreases {
     }
 
     /// Has rest curvatures follow where the cloth is bent beyond its yield curvature.
-    pub fn flow(&mut self, blocks: &[Block]) {
+    pub fn flow(&mut self, creasing: &ClothCreasing, blocks: &[Block]) {
         for (place, slot) in self.places.iter_mut().zip(self.layout.slots()) {
             *place = blocks[slot.block].position(slot.lane);
         }
@@ -218,12 +200,12 @@ impl MeshCreases {
             let mut trials = face.bent(&at, &axes);
             for ((trial, natural), rest) in trials.iter_mut().zip(face.natural).zip(&*rest) {
                 let elastic = (*trial - natural).to_array().into_iter().zip(rest);
-                let mut yielding = elastic.map(|(bent, rest)| self.creasing.trial(bent, *rest));
+                let mut yielding = elastic.map(|(bent, rest)| creasing.trial(bent, *rest));
                 *trial =
                     Vec3::from_array(std::array::from_fn(|_| yielding.next().unwrap_or_default()));
             }
             let norm_squared = trials.iter().map(|trial| trial.length_squared()).sum();
-            let flow = self.creasing.flow(norm_squared);
+            let flow = creasing.flow(norm_squared);
             if flow == 0.0 {
                 continue;
             }

@@ -70,7 +70,7 @@ impl MeshMatrix {
             {
                 patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
             }
-            let stiffness = f64::from(rigidity.mean * factors.of_face(*face)) * patch.area;
+            let stiffness = f64::from(rigidity.mean * factors.mean_bending(face)) * patch.area;
             rest.extend(patch.rest(index as u32, stiffness, &places));
             patches.push((patch, stiffness));
         }
@@ -167,7 +167,7 @@ pub(super) fn changed(
         };
         let place = |of: &Surface, particle: u32| of.rest_positions()[particle as usize];
         let is_same = before == after
-            && known.factors.of_face(before.0) == factors.of_face(after.0)
+            && known.factors.mean_bending(&before.0) == factors.mean_bending(&after.0)
             && particles(after).all(|of| place(known.surface, of) == place(surface, of));
         if !is_same {
             for particle in particles(before).chain(particles(after)) {

@@ -45,6 +45,7 @@ use torn_plate::{TornBending, TornPlate};
 #[derive(Debug, Clone)]
 pub struct Bending {
     of: Kind,
+    creasing: Option<ClothCreasing>,
     factors: Arc<StiffnessFactors>,
 }
 
@@ -65,6 +66,15 @@ impl Kind {
         }
     }
 
+    /// A bound of the largest eigenvalue of its forces by mass (1/s²): of what pushes, if it is soft.
+    fn bound(&self, blocks: &[Block]) -> f32 {
+        match self {
+            Self::Grid(grid) => grid.bound(blocks),
+            Self::Torn(torn) => torn.bound(blocks),
+            Self::Mesh(mesh) => mesh.bound(blocks),
+        }
+    }
+
     fn mesh_mut(&mut self) -> Option<&mut MeshBending> {
         match self {
             Self::Grid(_) => None,
@@ -72,12 +82,6 @@ impl Kind {
             Self::Mesh(mesh) => Some(mesh),
         }
     }
-}
-
-/// In one of how many sub-steps of `dt` (s) something of this bound (1/s²) needs to bend.
-fn stride(bound: f32, dt: f32) -> u32 {
-    let weights = push::LIMIT / (bound * dt * dt);
-    (weights as u32).clamp(1, schedule::MOST_AT_ONCE)
 }
 
 impl Bending {
@@ -116,7 +120,11 @@ impl Bending {
                 }
             }
         };
-        Some(Self { of, factors })
+        Some(Self {
+            of,
+            creasing: None,
+            factors,
+        })
     }
 
     /// Where a mesh's matrix lies, to see which ones share it.
@@ -131,8 +139,10 @@ impl Bending {
     pub(super) fn stride(&self, blocks: &[Block], dt: f32) -> u32 {
         match &self.of {
             Kind::Grid(_) => 1,
-            Kind::Torn(torn) => stride(torn.bound(blocks), dt),
-            Kind::Mesh(mesh) => stride(mesh.bound(blocks), dt),
+            of => {
+                let weights = push::LIMIT / (of.bound(blocks) * dt * dt);
+                (weights as u32).clamp(1, schedule::MOST_AT_ONCE)
+            }
         }
     }
 
@@ -156,11 +166,7 @@ impl Bending {
 
     /// The longest sub-step (s) in which it may [push](Self::push).
     pub(super) fn longest_push(&self, blocks: &[Block]) -> f32 {
-        match &self.of {
-            Kind::Grid(grid) => grid.longest_push(blocks),
-            Kind::Torn(torn) => (push::LIMIT / torn.bound(blocks)).sqrt(),
-            Kind::Mesh(mesh) => mesh.longest_push(blocks),
-        }
+        (push::LIMIT / self.of.bound(blocks)).sqrt()
     }
 
     /// Adds the displacements by the forces at the current positions, with this weight (s²).
@@ -179,23 +185,20 @@ impl Bending {
         material: &ClothMaterial,
         creasing: Option<ClothCreasing>,
     ) {
-        let rigidity = material.woven_bending();
-        match (&mut self.of, surface.as_grid()) {
-            (Kind::Grid(grid), of) => of.map_or((), |of| grid.set_creasing(of, creasing)),
-            (of, None) => {
-                if let Some(mesh) = of.mesh_mut() {
-                    mesh.set_creasing(surface, rigidity, &self.factors, creasing);
-                }
-            }
-            _ => {}
+        self.creasing = creasing;
+        let (creases, rigidity) = (creasing.is_some(), material.woven_bending());
+        if let (Kind::Grid(grid), Some(of)) = (&mut self.of, surface.as_grid()) {
+            grid.set_creasing(of, creases);
+        } else if let Some(mesh) = self.of.mesh_mut() {
+            mesh.set_creasing(surface, rigidity, &self.factors, creases);
         }
     }
 
     /// The rest curvatures of its creases; none if it does not crease.
     pub fn creases(&self) -> &[f32] {
         let creases = match &self.of {
-            Kind::Grid(grid) => grid.creases().map(grid_creases::GridCreases::rest),
-            of => (of.mesh().and_then(MeshBending::creases)).map(mesh_creases::MeshCreases::rest),
+            Kind::Grid(grid) => grid.creases.as_ref().map(|of| of.rest()),
+            of => (of.mesh()).and_then(|mesh| Some(mesh.creases.as_ref()?.rest())),
         };
         creases.unwrap_or_default()
     }
@@ -203,16 +206,22 @@ impl Bending {
     /// Takes over rest curvatures of earlier; none if they are not of this surface.
     pub(super) fn recall_creases(&mut self, creases: &[f32]) {
         match &mut self.of {
-            Kind::Grid(grid) => grid.creases_mut().map(|of| of.recall(creases)),
-            of => (of.mesh_mut().and_then(MeshBending::creases_mut)).map(|of| of.recall(creases)),
+            Kind::Grid(grid) => grid.creases.as_mut().map(|of| of.recall(creases)),
+            of => {
+                (of.mesh_mut().and_then(|mesh| mesh.creases.as_mut())).map(|of| of.recall(creases))
+            }
         };
     }
 
     /// Creases it where it is bent beyond its yield curvature.
     pub(super) fn crease(&mut self, blocks: &[Block]) {
+        let Some(creasing) = &self.creasing else {
+            return;
+        };
         match &mut self.of {
-            Kind::Grid(grid) => grid.creases_mut().map(|of| of.flow(blocks)),
-            of => (of.mesh_mut().and_then(MeshBending::creases_mut)).map(|of| of.flow(blocks)),
+            Kind::Grid(grid) => grid.creases.as_mut().map(|of| of.flow(creasing, blocks)),
+            of => (of.mesh_mut().and_then(|mesh| mesh.creases.as_mut()))
+                .map(|of| of.flow(creasing, blocks)),
         };
     }
 }

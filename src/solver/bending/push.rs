@@ -7,7 +7,7 @@
 
 use super::plate::Plate;
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, MapInline, W},
+    cloth::{Block, LANES, Lanes, Layout, MapInline, W, most},
     solver::kernels::{EDGE, Kernels, Moments, Stiffness, Vec3Lanes},
 };
 
@@ -80,8 +80,7 @@ impl Push {
             for (block, bound) in blocks.iter().zip(&self.bounds[end]) {
                 let view = block.view();
                 for l in 0..LANES {
-                    let own = view[W + l] * bound[l];
-                    largest[l] = if own > largest[l] { own } else { largest[l] };
+                    largest[l] = most(view[W + l] * bound[l], largest[l]);
                 }
             }
         }

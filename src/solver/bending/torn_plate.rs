@@ -139,7 +139,7 @@ impl TornBending {
 
     /// A bound of the largest eigenvalue of `s M⁻¹ K` at s = 1 (1/s²).
     pub fn bound(&self, blocks: &[Block]) -> f32 {
-        match self.mesh.creases() {
+        match self.mesh.creases {
             Some(_) => self.mesh.bound(blocks),
             None => self.plate.bound(blocks),
         }
@@ -147,7 +147,7 @@ impl TornBending {
 
     pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
         self.weight = weight;
-        self.is_soft = self.mesh.creases().is_none() && weight * self.plate.bound(blocks) < LIMIT;
+        self.is_soft = self.mesh.creases.is_none() && weight * self.plate.bound(blocks) < LIMIT;
         if !self.is_soft {
             self.mesh.prepare(blocks, weight);
         }
@@ -164,7 +164,7 @@ impl TornBending {
 
     /// Adds what the forces at the positions make of displacements with this weight (s²).
     pub fn push(&mut self, blocks: &mut [Block], weight: f32, kernels: &Kernels) {
-        match self.mesh.creases() {
+        match self.mesh.creases {
             Some(_) => self.mesh.push(blocks, weight),
             None => self.plate.apply(blocks, 0.0, weight, kernels),
         }

@@ -34,7 +34,7 @@ impl GridBands {
     /// Those in a list, each with a compliance of its own.
     pub fn of_list(grid: &ClothGrid, layout: Layout, list: &SpringList) -> Self {
         let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
-        let on_grid = list.on_grid(grid);
+        let [across, down, falling, rising] = &list.on_grid(grid);
         let band = |step, of: &[f32], direction: Direction| {
             SpringBand::of_rows(grid.step_length(step), layout, rows, |number, column| {
                 let row = direction.row(number, rows);
@@ -42,11 +42,10 @@ impl GridBands {
                 (!compliance.is_nan()).then_some(compliance)
             })
         };
-        let (falling, rising) = (&on_grid.falling, &on_grid.rising);
         let has_diagonals = falling.iter().chain(rising).any(|of| !of.is_nan());
         Self {
-            across: [(); 2].map(|()| band((0, 1), &on_grid.across, Direction::Down)),
-            down: band((1, 0), &on_grid.down, Direction::Down),
+            across: [(); 2].map(|()| band((0, 1), across, Direction::Down)),
+            down: band((1, 0), down, Direction::Down),
             diagonals: has_diagonals.then(|| {
                 [(falling, Direction::Right), (rising, Direction::Left)]
                     .map(|(of, direction)| band((1, 1), of, direction))
@@ -107,37 +106,31 @@ impl GridBands {
         sums
     }
 
-    /// The lengths of the springs that begin in these rows.
+    /// Raises `longest` to the lengths of the springs that begin in these rows.
     pub fn measure_rows(
         &self,
         blocks: &[Block],
         layout: Layout,
         rows: Range<usize>,
         kernels: &Kernels,
-    ) -> Longest {
-        let mut longest = Longest::default();
+        longest: &mut Longest,
+    ) {
         let strip = layout.strip as usize;
         let [across, _] = &self.across;
         let last = layout.rows as usize - 1;
         for row in rows {
             let (upper, lower) = blocks[row * strip..].split_at(strip);
-            (kernels.measure_within)(upper, across.holds_of(row, strip), &mut longest);
+            (kernels.measure_within)(upper, across.holds_of(row, strip), longest);
             if row < last {
                 let lower = &lower[..strip];
-                (kernels.measure_down)(upper, lower, self.down.holds_of(row, strip), &mut longest);
+                (kernels.measure_down)(upper, lower, self.down.holds_of(row, strip), longest);
                 if let Some([right, left]) = &self.diagonals {
                     let left = left.holds_of(Direction::Left.row(row + 1, last + 1), strip);
-                    (kernels.measure_diagonal)(
-                        upper,
-                        lower,
-                        right.holds_of(row, strip),
-                        &mut longest,
-                    );
-                    (kernels.measure_diagonal)(lower, upper, left, &mut longest);
+                    (kernels.measure_diagonal)(upper, lower, right.holds_of(row, strip), longest);
+                    (kernels.measure_diagonal)(lower, upper, left, longest);
                 }
             }
         }
-        longest
     }
 
     /// The stretch by the lengths of the longest springs.

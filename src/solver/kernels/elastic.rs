@@ -111,7 +111,7 @@ impl ElasticGrid {
     /// Of those springs of a list that are along the grid, between particles that lie as `layout` says; `None` if one is rigid.
     pub fn of_list(grid: &ClothGrid, layout: Layout, list: &SpringList) -> Option<Self> {
         let columns = grid.columns() as usize;
-        let on_grid = list.on_grid(grid);
+        let [across, down, falling, rising] = &list.on_grid(grid);
         let of = |step, of: &[f32], down: usize| {
             let rest = grid.step_length(step);
             Elastic::of_rows(rest, layout, layout.rows as usize, |row, column| {
@@ -119,14 +119,14 @@ impl ElasticGrid {
                 (!compliance.is_nan()).then_some(*compliance)
             })
         };
-        let across = of((0, 1), &on_grid.across, 0)?;
+        let across = of((0, 1), across, 0)?;
         Some(Self {
             layout,
             across: [across.clone(), across],
-            down: of((1, 0), &on_grid.down, 0)?,
-            falling: of((1, 1), &on_grid.falling, 0)?,
+            down: of((1, 0), down, 0)?,
+            falling: of((1, 1), falling, 0)?,
             // Found from the row above.
-            rising: of((1, 1), &on_grid.rising, 1)?,
+            rising: of((1, 1), rising, 1)?,
         })
     }
 

@@ -28,9 +28,8 @@ pub(crate) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Vec3Lanes]) 
 fn forward(
     [own, next]: [&Lanes; 2],
     stiffness: &Lanes,
-    above: &Lanes,
     lower: &Lanes,
-    before: &Lanes,
+    [above, before]: [&Lanes; 2],
 ) -> [Lanes; 2] {
     let (mut moment, mut out) = ([0.0; LANES], [0.0; LANES]);
     for l in 0..LANES {
@@ -58,13 +57,8 @@ pub(crate) fn twist_forward(
         let lower = &factors[j][0];
         for axis in 0..3 {
             let links = [&own[j][axis], &next[j][axis]];
-            [moments[j][axis], out[j][axis]] = forward(
-                links,
-                &stiffness[j],
-                &moments[j][axis],
-                lower,
-                &before[j][axis],
-            );
+            let above = [&moments[j][axis], &before[j][axis]];
+            [moments[j][axis], out[j][axis]] = forward(links, &stiffness[j], lower, above);
         }
     }
 }

@@ -42,7 +42,9 @@ use super::{
     partitions::{MAX_PARTITIONS, in_partitions, take},
     step::{DAMPING_REFERENCE, SubStep, TickStep},
 };
-use crate::cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z};
+use crate::cloth::{
+    Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z, most,
+};
 use list::ForceList;
 
 /// Of the largest stable sub-step. The rest is for bending, which pushes with them.
@@ -139,15 +141,9 @@ impl SoftSprings {
             for (block, sum) in blocks.iter().zip(self.sums_of(row)) {
                 let view = block.view();
                 for l in 0..LANES {
-                    let own = view[W + l] * sum[l];
-                    largest[l] = if own > largest[l] { own } else { largest[l] };
+                    largest[l] = most(view[W + l] * sum[l], largest[l]);
                     for at in [X, Y, Z] {
-                        let away = view[at + l].abs();
-                        farthest[l] = if away > farthest[l] {
-                            away
-                        } else {
-                            farthest[l]
-                        };
+                        farthest[l] = most(view[at + l].abs(), farthest[l]);
                     }
                 }
             }
@@ -173,7 +169,7 @@ impl SoftSprings {
         SubStep { index, count, .. }: SubStep,
         damping_reference: &mut DampingReference,
         bending: Option<(&mut Bending, f32)>,
-        linearized: Option<&[LinearForce]>,
+        linearized: &[LinearForce],
         free_pieces: &mut FreePieces,
         kernels: &Kernels,
     ) -> f32 {
@@ -203,9 +199,7 @@ impl SoftSprings {
         {
             bending.push(blocks, bends_for * dt * dt / kept, kernels);
         }
-        if let Some(linearized) = linearized {
-            (kernels.force_push)(blocks, linearized, weight / kept, 1.0 / dt);
-        }
+        (kernels.force_push)(blocks, linearized, weight / kept, 1.0 / dt);
         let moved = self.kick(blocks, &kick, kernels);
         moved.into_iter().fold(0.0, f32::max).sqrt()
     }
@@ -228,27 +222,8 @@ impl SoftSprings {
     /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.
     fn kick(&mut self, blocks: &mut [Block], kick: &Kick, kernels: &Kernels) -> Lanes {
         let mut moved = [[0.0; LANES]; MAX_PARTITIONS];
-        let Self {
-            springs,
-            scratch,
-            borders,
-            partitions,
-            ..
-        } = self;
-        let partitions = *partitions;
-        if partitions == 1 {
-            let around: [&[Block]; 2] = [&[], &[]];
-            (kernels.kick)(
-                blocks,
-                0,
-                around,
-                springs,
-                kick,
-                &mut scratch[0],
-                &mut moved[0],
-            );
-            return moved[0];
-        }
+        let (springs, partitions) = (&self.springs, self.partitions);
+        let (scratch, borders) = (&mut self.scratch, &mut self.borders);
         let (rows, strip) = (springs.layout.rows as usize, springs.layout.strip as usize);
         if scratch.len() < partitions {
             scratch.resize(partitions, scratch[0].clone());
@@ -268,10 +243,8 @@ impl SoftSprings {
             .take(partitions)
             .enumerate();
         let parts = each.map(|(partition, (scratch, moved))| {
-            let own = take(
-                &mut rest,
-                (first_row(partition + 1) - first_row(partition)) * strip,
-            );
+            let rows = first_row(partition + 1) - first_row(partition);
+            let own = take(&mut rest, rows * strip);
             // Of each border, the row above it and the row below it.
             let row = |at: usize| borders.get(at * strip..(at + 1) * strip).unwrap_or(&[]);
             let above: &[Block] = partition
@@ -283,6 +256,7 @@ impl SoftSprings {
         in_partitions(parts, |(own, first, around, scratch, moved)| {
             (kernels.kick)(own, first, around, springs, kick, scratch, moved);
         });
+        let moved = &moved[..partitions];
         array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))
     }
 }

@@ -153,21 +153,13 @@ struct Demand {
 
 impl Demand {
     fn observe(&mut self, wanted: f32) {
-        if wanted > self.substeps {
+        let is_slack = wanted < SLACKER * self.substeps;
+        self.slack = if is_slack { self.slack + 1 } else { 0 };
+        if wanted > self.substeps || self.slack == SLACK_TICKS {
             *self = Self {
                 substeps: (MARGIN * wanted).ceil(),
                 slack: 0,
             };
-        } else if wanted < SLACKER * self.substeps {
-            self.slack += 1;
-            if self.slack == SLACK_TICKS {
-                *self = Self {
-                    substeps: (MARGIN * wanted).ceil(),
-                    slack: 0,
-                };
-            }
-        } else {
-            self.slack = 0;
         }
     }
 

@@ -38,7 +38,9 @@ use bevy::{
 use thiserror::Error;
 
 use super::{
-    Derived, Extent, Faces, Surface, Torn, incidence::Incidence, springs::face_area,
+    Derived, Extent, Faces, Surface, Torn,
+    incidence::Incidence,
+    springs::{face_area, sides},
     triangles::VertexAttribute,
 };
 use crate::cloth::grid::ClothGrid;
@@ -84,10 +86,14 @@ impl Surface {
         self.torn.is_some()
     }
 
+    /// The surface before it was torn; itself, if it is not.
+    pub(super) fn before_tears(&self) -> &Self {
+        self.torn.as_ref().map_or(self, |torn| &torn.whole)
+    }
+
     /// The grid that it was made from, torn or not.
     pub(crate) fn rest_grid(&self) -> Option<&ClothGrid> {
-        let torn = self.torn.as_ref().and_then(|torn| torn.whole.as_grid());
-        self.as_grid().or(torn)
+        self.before_tears().as_grid()
     }
 
     /// The particle of the whole surface that a particle was before anything was torn.
@@ -97,17 +103,13 @@ impl Surface {
 
     /// The positions of the particles at rest (m) before anything was torn.
     pub(crate) fn whole_positions(&self) -> impl Iterator<Item = Vec3> + '_ {
-        let before = |index: usize| match &self.torn {
-            Some(torn) => torn.whole.rest[torn.origin[index] as usize],
-            None => self.rest[index],
-        };
-        (0..self.len()).map(before)
+        let before = &self.before_tears().rest;
+        (0..self.len() as u32).map(|particle| before[self.origin_of(particle) as usize])
     }
 
     /// Whether it encloses a volume, or did so before it was torn.
     pub(crate) fn was_closed(&self) -> bool {
-        let whole = self.torn.as_ref().map(|torn| &torn.whole);
-        whole.map_or_else(|| self.is_closed(), |whole| whole.is_closed())
+        self.before_tears().is_closed()
     }
 
     /// The connected piece of each particle, numbered from 0.
@@ -194,12 +196,11 @@ impl Surface {
     pub(crate) fn middle_of(&self, face: [u32; 3], places: &[DVec3]) -> DVec3 {
         let place = |corner: u32| places[corner as usize];
         if self.rest_grid().is_some() {
-            let whole = self.torn.as_ref().map_or(self, |torn| &torn.whole);
-            let diagonal = whole.diagonal_of(face.map(|corner| self.origin_of(corner)));
-            let ends = face
-                .iter()
-                .filter(|corner| diagonal.contains(&self.origin_of(**corner)));
-            return ends.map(|end| place(*end)).sum::<DVec3>() / 2.0;
+            let origins = face.map(|corner| self.origin_of(corner));
+            let diagonal = self.before_tears().diagonal_of(origins);
+            let ends = face.into_iter().zip(origins);
+            let ends = ends.filter(|(_, origin)| diagonal.contains(origin));
+            return ends.map(|(end, _)| place(end)).sum::<DVec3>() / 2.0;
         }
         face.map(place).into_iter().sum::<DVec3>() / 3.0
     }
@@ -244,32 +245,28 @@ impl Surface {
     }
 
     /// The two ends of a face's longest side, a cell's diagonal, the smaller first.
-    fn diagonal_of(&self, [a, b, c]: [u32; 3]) -> [u32; 2] {
+    fn diagonal_of(&self, face: [u32; 3]) -> [u32; 2] {
         let square =
             |[a, b]: [u32; 2]| self.rest[a as usize].distance_squared(self.rest[b as usize]);
-        let [one, two, three] = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
-        let longer = if square(one) > square(two) { one } else { two };
-        if square(longer) > square(three) {
-            longer
-        } else {
-            three
-        }
+        let longer = |one, other| {
+            if square(one) > square(other) {
+                one
+            } else {
+                other
+            }
+        };
+        let [one, two, three] = sides(face);
+        longer(longer(one, two), three)
     }
 }
 
 impl Torn {
     fn surface(self, edges: &[[u32; 2]]) -> Surface {
         let whole = self.whole.clone();
-        let copied = |of: &[Vec3]| -> Vec<Vec3> {
-            self.origin
-                .iter()
-                .map(|origin| of[*origin as usize])
-                .collect()
-        };
-        let rest = copied(&whole.rest);
+        let rest = self.of_origin(&whole.rest);
         let normals = match &whole.normals[..] {
             [one] => vec![*one],
-            each => copied(each),
+            each => self.of_origin(each),
         };
         let areas = self.areas(edges);
         let (links, is_border) = self.links();
@@ -277,7 +274,8 @@ impl Torn {
         let first = |face: &u32| self.corners[*face as usize].into_iter().min();
         order.sort_by_key(first);
         let of_face = |face: &u32| self.corners[*face as usize];
-        let faces = Faces::by_first_corner(order.iter().map(of_face).collect(), rest.len());
+        let faces: Vec<[u32; 3]> = order.iter().map(of_face).collect();
+        let faces = Faces::by_first_corner(&faces, rest.len());
         let grain = match whole.as_grid() {
             Some(grid) => {
                 let below = whole.rest[grid.columns() as usize];
@@ -290,15 +288,11 @@ impl Torn {
                 .collect(),
         };
         let of_origin = |attribute: &VertexAttribute| {
-            let values = self
-                .origin
-                .iter()
-                .map(|at| attribute.values()[*at as usize]);
-            VertexAttribute::new(attribute.name(), values.collect())
+            VertexAttribute::new(attribute.name(), self.of_origin(attribute.values()))
         };
         let uvs = match whole.uvs() {
             [] => Vec::new(),
-            uvs => self.origin.iter().map(|at| uvs[*at as usize]).collect(),
+            uvs => self.of_origin(uvs),
         };
         let mut surface = Surface {
             areas,
@@ -326,6 +320,11 @@ impl Torn {
         };
         surface.rest = surface.parted(&surface.rest, |particle| surface.origin_of(particle));
         surface
+    }
+
+    /// Values of the whole surface's particles, for each of this one's.
+    fn of_origin<T: Copy>(&self, whole: &[T]) -> Vec<T> {
+        self.origin.iter().map(|at| whole[*at as usize]).collect()
     }
 
     /// Areas of the particles. Those of the whole surface, but where edges are torn.

@@ -40,11 +40,6 @@ impl Torn {
         torn
     }
 
-    /// Number of particles of the whole surface.
-    pub fn whole_len(&self) -> usize {
-        self.whole.len()
-    }
-
     /// Finds the parts that come off a particle with one torn edge after the other.
     fn split(&self, edges: &[(u32, usize, u32)], parts: &mut Vec<Part>) {
         let particle = edges[0].0;

@@ -23,15 +23,6 @@ use crate::{
 /// Largest speed at which gas moves particles outwards (m/s): a flat balloon of 0.3 m fills in a thirtieth of a second.
 pub(super) const FILLING: f32 = 10.0;
 
-/// An amount of gas, and the pressure around it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Amount {
-    /// Its volume at the pressure outside (m³).
-    pub volume: f64,
-    /// Pressure outside (Pa).
-    pub outside: f64,
-}
-
 /// The state of a cloth's gas from sub-step to sub-step.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -48,7 +39,7 @@ impl Gas {
     /// impulse (N s).
     pub(super) fn press(
         &mut self,
-        amount: Amount,
+        amount: [f64; 2],
         enclosed: Enclosed,
         blocks: &mut [Block],
         areas: &[Vec3Lanes],
@@ -84,7 +75,7 @@ impl Gas {
         };
         let without = enclosed.volume + enclosed.outwards * swept;
         let widest = enclosed.volume + enclosed.area * f64::from(FILLING) * seconds;
-        self.pressure = amount.pressure(without - taken, give, widest);
+        self.pressure = pressure(amount, without - taken, give, widest);
         self.push = self.pressure * give;
         self.expected = without + self.push;
         let pressure = enclosed.outwards * self.pressure;
@@ -102,21 +93,18 @@ impl Gas {
     }
 }
 
-impl Amount {
-    /// The pressure (Pa) of the gas in a volume that is `without` m³ and grows by `give` m³ for each pascal. It is
-    /// limited so that the volume does not exceed `widest` m³.
-    fn pressure(&self, without: f64, give: f64, widest: f64) -> f64 {
-        let Self { volume, outside } = *self;
-        // V² − (V* − S p₀) V − S p₀ V₀ = 0.
-        let held = give * outside;
-        let (linear, constant) = (without - held, held * volume);
-        let root = (linear * linear + 4.0 * constant).sqrt();
-        let end = if linear > 0.0 {
-            0.5 * (linear + root)
-        } else {
-            2.0 * constant / (root - linear)
-        };
-        let filling = (widest - without) / give;
-        (outside * (volume / end - 1.0)).min(filling.max(0.0))
-    }
+/// The pressure (Pa) of a gas that has this volume (m³) at the pressure outside (Pa). Its container has `without` m³, and grows by
+/// `give` m³ for each pascal. The pressure is limited so that the volume does not exceed `widest` m³.
+fn pressure([volume, outside]: [f64; 2], without: f64, give: f64, widest: f64) -> f64 {
+    // V² − (V* − S p₀) V − S p₀ V₀ = 0.
+    let held = give * outside;
+    let (linear, constant) = (without - held, held * volume);
+    let root = (linear * linear + 4.0 * constant).sqrt();
+    let end = if linear > 0.0 {
+        0.5 * (linear + root)
+    } else {
+        2.0 * constant / (root - linear)
+    };
+    let filling = (widest - without) / give;
+    (outside * (volume / end - 1.0)).min(filling.max(0.0))
 }

@@ -46,7 +46,6 @@ use crate::{
         AeroCoefficients, Enclosed, Kernels, LinearForce, Rows, Triangles, Vec3Lanes,
     },
 };
-use gas::Amount;
 use wind::LocalWind;
 
 /// The air around a cloth. By default it has no density.
@@ -140,10 +139,7 @@ impl Airflow {
         let Some(ClothPressure::Gas { volume, outside }) = self.pressure else {
             return DVec3::ZERO;
         };
-        let amount = Amount {
-            volume: volume.into(),
-            outside: outside.into(),
-        };
+        let amount = [volume, outside].map_inline(f64::from);
         let (weight, seconds) = (weight.into(), seconds.into());
         gas.press(amount, self.enclosed, blocks, &self.areas, weight, seconds)
     }
@@ -158,41 +154,29 @@ impl Airflow {
         linearized: &mut [LinearForce],
         places: &mut [Lanes],
     ) {
-        let Air {
-            density,
-            drag,
-            lift,
-            wind,
-        } = self.air;
+        let air = self.air;
         let mut coefficients = AeroCoefficients {
-            drag: density * drag,
-            lift: 0.5 * density * lift,
+            drag: air.density * air.drag,
+            lift: 0.5 * air.density * air.lift,
             pressure: 0.0,
             substep,
             inverse_substep: 1.0 / substep,
         };
         let (layout, blocks) = (self.layout, particles.blocks());
         let (rows, strip) = (layout.rows as usize, layout.strip as usize);
-        let Self {
-            triangles,
-            local,
-            is_local,
-            areas,
-            winds,
-            ..
-        } = self;
-        if !*is_local {
-            winds.fill(wind.to_array().map_inline(|of| [of; LANES]));
+        let (areas, winds) = (&mut self.areas, &mut self.winds);
+        if !self.is_local {
+            winds.fill(air.wind.to_array().map_inline(|of| [of; LANES]));
         }
-        if let Some(triangles) = triangles {
+        if let Some(triangles) = &mut self.triangles {
             let enclosed = triangles.areas(blocks, layout, areas);
             if let Some(ClothPressure::Gauge(pressure)) = self.pressure {
                 let outwards = enclosed.outwards * enclosed.volume.signum();
                 coefficients.pressure = pressure * outwards as f32;
             }
             self.enclosed = enclosed;
-            if *is_local && wind_is_asked {
-                local.of_mesh(particles, winds);
+            if self.is_local && wind_is_asked {
+                self.local.of_mesh(particles, winds);
             }
             (kernels.air_linearize)(blocks, areas, winds, &coefficients, linearized, places);
             return;
@@ -208,8 +192,8 @@ impl Airflow {
                 last,
             };
             (kernels.air_areas)(&around, areas);
-            if *is_local {
-                local.of_row(index, layout, winds);
+            if self.is_local {
+                self.local.of_row(index, layout, winds);
             }
             (kernels.air_linearize)(row(index), areas, winds, &coefficients, linearized, places);
         }

@@ -13,7 +13,7 @@
 
 use super::{
     beside::Chains,
-    link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
+    link::{Before, Behind, Link, SpringBand, equation},
 };
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
@@ -32,24 +32,10 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
     before: &mut Before,
     link: &mut Link,
 ) {
-    let (softness, hold) = (&springs.softness[at], &springs.hold[at]);
+    let own = [&springs.softness[at], &springs.hold[at], pulled];
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
-        let [x, y, z] = span(a, b, springs.inverse_rest, l);
-        let weight = a[W + l] + b[W + l];
-        let softness = if DAMPED {
-            springs.kept * softness[l]
-        } else {
-            softness[l]
-        };
-        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest);
-        let right = if DAMPED {
-            damped(right, [a, b], [x, y, z], springs, l)
-        } else if AGAIN {
-            after(right, [x, y, z], softness, pulled[l])
-        } else {
-            right
-        };
+        let ([x, y, z], [diagonal, right]) = equation::<DAMPED, AGAIN>([a, b], springs, own, l);
         let along = before.span[0][l] * x + before.span[1][l] * y + before.span[2][l] * z;
         let off = -a[W + l] * along;
         let share = off * before.pivot[l];
@@ -99,20 +85,11 @@ fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
 /// Solves chains that lead from row to row.
 #[inline(always)]
 pub(crate) fn solve_chains(chains: &mut Chains, springs: &SpringBand) {
-    if chains.is_oblique() {
-        solve::<true, false>(chains, springs);
-    } else {
-        solve::<false, false>(chains, springs);
-    }
-}
-
-/// The same with damping along them.
-#[inline(always)]
-pub(crate) fn solve_damped_chains(chains: &mut Chains, springs: &SpringBand) {
-    if chains.is_oblique() {
-        solve::<true, true>(chains, springs);
-    } else {
-        solve::<false, true>(chains, springs);
+    match (chains.is_oblique(), springs.kept < 1.0) {
+        (true, false) => solve::<true, false>(chains, springs),
+        (false, false) => solve::<false, false>(chains, springs),
+        (true, true) => solve::<true, true>(chains, springs),
+        (false, true) => solve::<false, true>(chains, springs),
     }
 }
 
@@ -181,16 +158,14 @@ pub(crate) struct Columns<'a> {
     pub pulled: &'a mut [Lanes],
 }
 
-/// Solves the chosen columns, of rigid springs.
+/// Solves the chosen columns. Elastic springs go on from what they have pulled with.
 #[inline(always)]
 pub(crate) fn solve_columns(columns: &mut Columns, springs: &SpringBand) {
-    solve_chosen::<false>(columns, springs);
-}
-
-/// The same of elastic springs, which go on from what they have pulled with.
-#[inline(always)]
-pub(crate) fn solve_columns_again(columns: &mut Columns, springs: &SpringBand) {
-    solve_chosen::<true>(columns, springs);
+    if columns.pulled.is_empty() {
+        solve_chosen::<false>(columns, springs);
+    } else {
+        solve_chosen::<true>(columns, springs);
+    }
 }
 
 #[inline(always)]
@@ -213,11 +188,8 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, springs: &SpringBand) 
         for (&block, (link, before)) in chosen.iter().zip(links.iter_mut().zip(&mut *before)) {
             let block = block as usize;
             let ends = [upper[block].view(), lower[block].view()];
-            let pulled = if AGAIN {
-                &pulled[(row + 1) * strip + block]
-            } else {
-                &NONE
-            };
+            let at = (row + 1) * strip + block;
+            let pulled = if AGAIN { &pulled[at] } else { &NONE };
             let own = (springs, springs.first_of(row) + block);
             eliminate::<false, false, AGAIN>(ends, own, pulled, before, link);
         }
