@@ -33,15 +33,15 @@ const END: usize = 7 * LANES;
 /// The numbers of eight particles, each quantity's together.
 pub(crate) type View = [f32; END];
 
-/// Compiles to one instruction.
+/// The smaller of two numbers, in one instruction; the second if one is NaN.
 #[inline(always)]
-pub(crate) fn least(a: f32, b: f32) -> f32 {
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Compiles to one instruction.
+/// The larger of two numbers, likewise.
 #[inline(always)]
-pub(crate) fn most(a: f32, b: f32) -> f32 {
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 

@@ -68,7 +68,7 @@ pub use tears::ClothTears;
 pub(crate) use cut::Cut;
 pub(crate) use grouped::Grouped;
 pub(crate) use lanes::{
-    Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z, least, most,
+    Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z, larger, smaller,
 };
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;

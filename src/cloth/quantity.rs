@@ -37,14 +37,14 @@ impl QuantityError {
 
     /// `value` if it is positive and finite.
     pub(crate) fn positive(value: f32, quantity: &'static str) -> Result<f32, Self> {
-        let is_positive = |value: f32| value > 0.0 && value.is_finite();
-        Self::check(value, is_positive, quantity, "positive and finite")
+        let Allowed(test, expected) = Allowed::POSITIVE;
+        Self::check(value, test, quantity, expected)
     }
 
     /// `value` if it is finite and not negative.
     pub(crate) fn not_negative(value: f32, quantity: &'static str) -> Result<f32, Self> {
-        let is_not_negative = |value: f32| value >= 0.0 && value.is_finite();
-        Self::check(value, is_not_negative, quantity, "zero or more, and finite")
+        let Allowed(test, expected) = Allowed::SIZE;
+        Self::check(value, test, quantity, expected)
     }
 }
 
@@ -54,7 +54,8 @@ pub(crate) struct Allowed(pub fn(f32) -> bool, pub &'static str);
 
 impl Allowed {
     pub const FINITE: Self = Self(f32::is_finite, "finite");
-    pub const SIZE: Self = Self(|v| v >= 0.0 && v.is_finite(), "finite and 0 or more");
+    pub const POSITIVE: Self = Self(|v| v > 0.0 && v.is_finite(), "positive and finite");
+    pub const SIZE: Self = Self(|v| v >= 0.0 && v.is_finite(), "zero or more, and finite");
     pub const SHARE: Self = Self(|v| (0.0..=1.0).contains(&v), "from 0 to 1");
 
     /// Checks the values of a quantity.

@@ -73,14 +73,14 @@ impl Balls {
 
 /// A particle's ball and its backstop, as a sub-step ends.
 #[derive(Debug, Clone, Copy)]
-struct Allowed {
+struct Bounds {
     centre: Vec3,
     radius: f32,
     /// Centre and radius; a radius of 0 is none.
     backstop: (Vec3, f32),
 }
 
-impl Allowed {
+impl Bounds {
     /// The nearest allowed place.
     fn nearest(&self, place: Vec3) -> Vec3 {
         let inside = self.within_ball(place);
@@ -202,7 +202,7 @@ impl MotionConstraints {
                 if !is_beyond[lane] || block.inverse_mass(lane) == 0.0 {
                     continue;
                 }
-                let allowed = Allowed {
+                let allowed = Bounds {
                     centre: balls.centre(lane, part),
                     radius: balls.radius[lane],
                     backstop: behind.map_or((Vec3::ZERO, 0.0), |(balls, _)| {
@@ -258,7 +258,7 @@ mod tests {
             let [centre, place] = [scattered(case), scattered(case + 77)];
             let normal = scattered(case + 50).normalize();
             let (radius, behind, back) = (0.6, 0.1 * (case % 4) as f32, 0.8);
-            let allowed = Allowed {
+            let allowed = Bounds {
                 centre,
                 radius,
                 backstop: (centre - normal * (behind + back), back),

@@ -4,7 +4,7 @@ use bevy::math::{Vec3, bounding::BoundingSphere};
 
 use super::ClothParticles;
 use crate::cloth::{
-    lanes::{DX, LANES, X, Y, Z, most},
+    lanes::{DX, LANES, X, Y, Z, larger},
     surface::Surface,
 };
 
@@ -27,7 +27,7 @@ impl ClothParticles {
                     before += came * came;
                 }
                 is_nan[lane] |= (now + before).is_nan();
-                largest[lane] = most(most(now, before), largest[lane]);
+                largest[lane] = larger(larger(now, before), largest[lane]);
             }
         }
         if is_nan.contains(&true) {
@@ -55,7 +55,7 @@ impl ClothParticles {
                     let z = view[Z + lane] - was[Z + lane];
                     let square = x * x + y * y + z * z;
                     sum[lane] += square;
-                    largest[lane] = most(square, largest[lane]);
+                    largest[lane] = larger(square, largest[lane]);
                 }
             }
             let farthest = largest.into_iter().fold(0.0, f32::max);

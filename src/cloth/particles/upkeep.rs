@@ -9,7 +9,7 @@ use super::{
 };
 use crate::cloth::{
     arrays::MapInline,
-    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X, most},
+    lanes::{Block, DX, DY, DZ, LANES, Layout, Slot, W, X, larger},
     material::ClothMaterial,
     pins::Pins,
     quantity::QuantityError,
@@ -107,7 +107,7 @@ impl ClothParticles {
             for lane in 0..LANES {
                 let moved = square(DX, lane);
                 valid[lane] &= is_valid(square(X, lane) + moved, view[W + lane]);
-                largest[lane] = most(moved, largest[lane]);
+                largest[lane] = larger(moved, largest[lane]);
             }
         }
         Survey {

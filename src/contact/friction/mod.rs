@@ -4,4 +4,4 @@ mod budgets;
 mod response;
 
 pub(crate) use budgets::FrictionBudget;
-pub(crate) use response::{Contact, Impulse, MAX_STEPS, PushOut, first_touch, larger, smaller};
+pub(crate) use response::{Contact, Impulse, MAX_STEPS, PushOut, first_touch};

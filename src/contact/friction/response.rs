@@ -2,7 +2,10 @@
 
 use bevy::math::{DVec3, Vec3};
 
-use crate::contact::colliders::ColliderSubstep;
+use crate::{
+    cloth::{larger, smaller},
+    contact::colliders::ColliderSubstep,
+};
 
 /// A contact at the end of a sub-step.
 #[derive(Debug, Clone, Copy)]
@@ -101,18 +104,6 @@ impl PushOut {
         let released = (overlap * self.rate).max(self.slowest);
         released.min(self.fastest).min(overlap)
     }
-}
-
-/// The larger of two numbers, as a comparison that vectorises.
-#[inline(always)]
-pub(crate) fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// The smaller of two numbers, likewise.
-#[inline(always)]
-pub(crate) fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 /// The impulse on a collider as mass × displacement (kg m): momentum times the sub-step.

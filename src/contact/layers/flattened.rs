@@ -4,10 +4,7 @@ use bevy::math::{Vec3, Vec3A};
 use multiversion::multiversion;
 
 use super::lanes::Eight;
-use crate::{
-    cloth::MapInline,
-    contact::friction::{larger, smaller},
-};
+use crate::cloth::{MapInline, larger, smaller};
 
 /// Most particles of a window.
 pub(super) const MOST_PARTICLES: usize = 256;

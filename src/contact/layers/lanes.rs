@@ -7,7 +7,7 @@ use bevy::math::Vec3;
 use multiversion::multiversion;
 
 use super::bounds::Bounds;
-use crate::contact::friction::{larger, smaller};
+use crate::cloth::{larger, smaller};
 
 /// Eight numbers.
 pub(super) type Eight = [f32; 8];

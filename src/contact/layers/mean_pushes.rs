@@ -16,10 +16,7 @@ use bevy::math::Vec3;
 use multiversion::multiversion;
 
 use super::{origin::Origin, participant::Participant};
-use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X},
-    contact::friction::{larger, smaller},
-};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Slot, X, larger, smaller};
 
 /// The mean of the last pushes of each particle of some cloths, each in its own frame, block by block (m per sub-step).
 #[derive(Debug, Default, Clone)]

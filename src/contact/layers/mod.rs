@@ -20,9 +20,9 @@
 //!    less, they are a thickness apart.
 //! 3. Neighbouring patches are apart, whatever their motion was, while a [projection](flattened) onto a plane keeps all points apart
 //!    there ([folds]): in bends of nearly a right angle to either side, less what the thickness takes.
-//! 4. A listed pair that has used up its distance is a contact. It is [pushed](response) apart in proportion to its
-//!    inverse masses, with friction. Then [a plane](certificate) between its nearest points at the beginning proves that
-//!    it has not passed, or it is stopped.
+//! 4. A listed pair that has used up its distance is a contact, or is kept apart by others that are. A contact is
+//!    [pushed](response) apart in proportion to its inverse masses, with friction. Then [a plane](certificate) between
+//!    its nearest points at the beginning proves that it has not passed, or it is stopped.
 //! 5. A push moves particles: 1 to 4 are done again, until nothing new is near.
 //!
 //! Patches that begin intersected are left alone until they are apart. With more work than the [limit](work) all cloths that

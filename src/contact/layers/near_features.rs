@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Features touch only once `used > apart`. Patches are looked at again once `used > until`, at the beginning of the
-//! sub-step in which that happens: up to there, nothing has touched that was not a contact. Then those of
+//! sub-step in which that happens: up to there, nothing has touched that was not a contact, or kept apart by others. Then those of
 //! their listed features are measured that may touch, or all are compared if the slack is used up.
 
 use super::{
@@ -19,7 +19,7 @@ use super::{
     near_patches::{Meets, PatchBoxes},
     participant::Participant,
     patch_pair::{Candidate, PatchPair, Place, measure},
-    work::{Counts, MOST_LISTED, WORK_OF_MEASURING},
+    work::{Counts, FEATURES_LEFT_OUT, MOST_LISTED, WORK_OF_MEASURING},
 };
 use crate::cloth::MapInline;
 
@@ -111,7 +111,8 @@ impl NearFeatures {
     /// All pairs of features that may touch, also those that others keep apart.
     #[cfg(test)]
     pub fn near(&self) -> impl Iterator<Item = &Candidate> {
-        self.pairs.iter().flat_map(|pair| {
+        let apart = self.pairs.iter().filter(|pair| !pair.is_tangled);
+        apart.flat_map(|pair| {
             let listed = self.candidates[pair.candidates()].iter();
             listed.filter(|candidate| candidate.apart <= pair.near)
         })
@@ -219,11 +220,11 @@ impl NearFeatures {
             let used_before = pair.used_at_start(motion);
             let slack = pair.slack - used_before;
             let place = Place::of(pair, cloths, motion, reserve);
-            if slack > place.used + reserve {
+            let near = if slack > place.used + reserve {
                 pair.slack = slack;
                 counts.take(WORK_OF_MEASURING * pair.count as usize);
                 let candidates = &mut self.candidates[pair.candidates()];
-                measure(pair, candidates, motion, &place, used_before);
+                measure(pair, candidates, motion, &place, used_before)
             } else {
                 counts.compared += 1;
                 self.listed -= pair.count as usize;
@@ -243,13 +244,15 @@ impl NearFeatures {
                 self.listed += pair.count as usize;
                 let candidates = &mut self.candidates[first..];
                 counts.take(candidates.len());
-                measure(pair, candidates, motion, &place, 0.0);
+                let near = measure(pair, candidates, motion, &place, 0.0);
                 pair.is_tangled |= self.begins && pair.has_tangled(&self.candidates[first..]);
-            }
+                near
+            };
+            counts.take(near * near / FEATURES_LEFT_OUT);
             if pair.is_tangled || self.begins {
                 let cross = cross(pair, cloths, motion, &self.joined, &mut counts.work);
                 if pair.is_tangled || cross {
-                    pair.leave_alone(cross, &place);
+                    pair.leave_alone(cross || near > 0, &place);
                 }
             }
             self.has_changed |= had_contacts || pair.has_contacts();
@@ -263,18 +266,23 @@ impl NearFeatures {
         }
         self.due = due;
         if are_apart {
-            self.retain(|folds, pair| {
-                let is_apart = folds.keep_apart(cloths, motion, pair);
-                if is_apart {
-                    folds.forget(pair);
-                }
-                !is_apart
-            });
+            self.drop_unfolded(cloths, motion);
         }
         if self.candidates.len() > 2 * self.listed + 64 {
             self.compact();
         }
         (counts.work > 0).then_some(left)
+    }
+
+    /// Drops neighbours that cannot touch any more.
+    fn drop_unfolded(&mut self, cloths: &[Participant], motion: &Motion) {
+        self.retain(|folds, pair| {
+            let is_apart = folds.keep_apart(cloths, motion, pair);
+            if is_apart {
+                folds.forget(pair);
+            }
+            !is_apart
+        });
     }
 
     /// Finds the patches that have used up what they may, but for a `reserve` (m). Returns the least that others may

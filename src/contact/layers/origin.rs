@@ -3,10 +3,7 @@
 use bevy::math::Vec3;
 
 use super::participant::Participant;
-use crate::{
-    cloth::{LANES, Lanes, MapInline, Slot, X, Y, Z},
-    contact::friction::larger,
-};
+use crate::cloth::{LANES, Lanes, MapInline, Slot, X, Y, Z, larger};
 
 /// Earlier positions of all particles of some cloths, each in its own frame, block by block (m). Empty lanes are NaN.
 #[derive(Debug, Default, Clone)]

@@ -33,7 +33,7 @@ pub(super) struct PatchPair {
     /// How far they may approach each other before features that are not listed can touch (m).
     pub slack: f32,
     /// How far they may approach each other before their features are measured again, and the largest `apart` of
-    /// contacts and of edges that are nearest at their ends (m).
+    /// near features, whether contacts or left out (m).
     pub until: f32,
     pub near: f32,
     /// The listed features.
@@ -139,9 +139,9 @@ impl PatchPair {
         candidates.iter().any(is_inside)
     }
 
-    /// Has no contacts, unless they neither touch nor `cross`: then they have come apart.
-    pub fn leave_alone(&mut self, cross: bool, place: &Place) {
-        self.is_tangled = cross || self.until <= self.near;
+    /// Has no contacts, unless they neither touch nor cross: then they have come apart.
+    pub fn leave_alone(&mut self, touch_or_cross: bool, place: &Place) {
+        self.is_tangled = touch_or_cross;
         if self.is_tangled {
             self.contacts = 0;
             self.until = self.slack.min(place.used + LEFT_ALONE * place.thickness);
@@ -199,14 +199,14 @@ impl Place {
 }
 
 /// Measures the listed features of two patches that have come nearer by no more than `used_before` (m), and finds which are contacts.
-/// Those that are still far stay as they are.
+/// Those that are still far stay as they are. Returns the number of those that are near.
 pub(super) fn measure(
     pair: &mut PatchPair,
     candidates: &mut [Candidate],
     motion: &Motion,
     place: &Place,
     used_before: f32,
-) {
+) -> usize {
     pair.near = place.used + FRESH * place.thickness;
     pair.until = pair.slack;
     let mut near = 0;
@@ -234,6 +234,7 @@ pub(super) fn measure(
         }
     }
     leave_out(pair, &mut candidates[..near]);
+    near
 }
 
 /// Leaves out of near features what other contacts keep apart, and what is not pushed and cannot pass.

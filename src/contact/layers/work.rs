@@ -17,6 +17,9 @@ pub(super) const WORK_OF_EIGHT: usize = 8;
 pub(super) const WORK_OF_MEASURING: usize = 3;
 pub(super) const WORK_OF_CONTACT: usize = 10;
 
+/// Number of near features that are compared with another in a unit of work, to find those that others keep apart.
+pub(super) const FEATURES_LEFT_OUT: usize = 8;
+
 /// Units of work for an edge and a face that may cross, in f64.
 pub(super) const WORK_OF_CROSSING: usize = 3;
 
@@ -30,8 +33,7 @@ pub(super) const MOST_LISTED: usize = 512;
 #[derive(Debug, Default, Clone, Copy)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Counts {
-    /// Number of pairs of features that touched, for each particle of those that might: the most of any sub-step. Folds that
-    /// touch have 0.1 to 0.3, piles 1.3.
+    /// Number of pairs of features that touched, for each particle of contacts: the most of any sub-step.
     pub touched: f32,
     /// Number of sub-steps, and the largest motion of a particle in one, as a fraction of the smallest thickness.
     /// Motion is relative to a particle in the middle of the first cloth.

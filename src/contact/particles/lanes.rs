@@ -12,11 +12,8 @@ use multiversion::multiversion;
 
 use super::near::{Cuboid, HalfSpace, Near, Round, near_cuboid, near_half_space, near_round};
 use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z},
-    contact::{
-        candidates::ContactBlock,
-        friction::{PushOut, larger, smaller},
-    },
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X, Y, Z, larger, smaller},
+    contact::{candidates::ContactBlock, friction::PushOut},
 };
 
 /// Constants for all blocks of a collider in a sub-step.

@@ -1,9 +1,6 @@
 //! Eight particles relative to a ball, a capsule, a box or a half-space.
 
-use crate::{
-    cloth::{LANES, Lanes, View, X, Y, Z},
-    contact::friction::{larger, smaller},
-};
+use crate::cloth::{LANES, Lanes, View, X, Y, Z, larger, smaller};
 
 /// A ball, or a capsule.
 #[derive(Debug, Clone, Copy)]

@@ -3,10 +3,10 @@
 use multiversion::multiversion;
 
 use crate::{
-    cloth::{Block, DX, DY, DZ, LANES, Lanes, MapInline, View, W, X, Y, Z},
+    cloth::{Block, DX, DY, DZ, LANES, Lanes, MapInline, View, W, X, Y, Z, larger, smaller},
     contact::{
         candidates::ContactBlock,
-        friction::{FrictionBudget, larger, smaller},
+        friction::FrictionBudget,
         particles::{LaneMotion, Sums},
     },
 };

@@ -7,10 +7,10 @@ use multiversion::multiversion;
 
 use super::lanes::{Cells, add_area, areas, move_corner, nearest_of_each, pushes, speeds};
 use crate::{
-    cloth::{Block, LANES, Layout, MapInline, Slot, View},
+    cloth::{Block, LANES, Layout, MapInline, Slot, View, larger, smaller},
     contact::{
         candidates::ContactBlock,
-        friction::{FrictionBudget, larger, smaller},
+        friction::FrictionBudget,
         particles::{LaneMotion, Sums},
     },
 };

@@ -5,10 +5,9 @@ use std::f32::consts::PI;
 use bevy::math::Vec3;
 
 use crate::{
-    cloth::{DX, DY, DZ, LANES, Lanes, Layout, MapInline, View, W, X, Y, Z},
+    cloth::{DX, DY, DZ, LANES, Lanes, Layout, MapInline, View, W, X, Y, Z, larger, smaller},
     contact::{
         colliders::cap,
-        friction::{larger, smaller},
         particles::{LaneMotion, Sums},
     },
 };

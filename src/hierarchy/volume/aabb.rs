@@ -10,7 +10,7 @@ use super::{
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, least, most},
+    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, larger, smaller},
     hierarchy::probe::{Core, Probe, ROUNDING},
 };
 
@@ -77,8 +77,8 @@ impl Volume for Aabb3d {
         for (axis, from) in [X, Y, Z].into_iter().enumerate() {
             let [a, b, c, d] = children.map_inline(|child| coordinates(child, from));
             for l in 0..LANES {
-                low[axis][l] = least(least(a[l], b[l]), least(c[l], d[l]));
-                high[axis][l] = most(most(a[l], b[l]), most(c[l], d[l]));
+                low[axis][l] = smaller(smaller(a[l], b[l]), smaller(c[l], d[l]));
+                high[axis][l] = larger(larger(a[l], b[l]), larger(c[l], d[l]));
             }
         }
     }
@@ -134,7 +134,7 @@ pub(super) fn coordinates(view: &View, from: usize) -> &Lanes {
 pub(super) fn unite_slab(children: [(&Lanes, &Lanes); 4], low: &mut Lanes, high: &mut Lanes) {
     let [a, b, c, d] = children;
     for l in 0..LANES {
-        low[l] = least(least(a.0[l], b.0[l]), least(c.0[l], d.0[l]));
-        high[l] = most(most(a.1[l], b.1[l]), most(c.1[l], d.1[l]));
+        low[l] = smaller(smaller(a.0[l], b.0[l]), smaller(c.0[l], d.0[l]));
+        high[l] = larger(larger(a.1[l], b.1[l]), larger(c.1[l], d.1[l]));
     }
 }

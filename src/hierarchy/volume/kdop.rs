@@ -8,7 +8,7 @@ use super::{
     slabs::{self, Slab},
 };
 use crate::{
-    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, least, most},
+    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, larger, smaller},
     hierarchy::probe::{Core, Probe},
 };
 
@@ -193,7 +193,8 @@ impl<const N: usize> Volume for KDop<N> {
         for l in 0..LANES {
             let size =
                 |child: &View| (child[X + l].abs() + child[Y + l].abs()) + child[Z + l].abs();
-            slack[l] = most(most(size(a), size(b)), most(size(c), size(d))) * (2.0 * f32::EPSILON);
+            slack[l] =
+                larger(larger(size(a), size(b)), larger(size(c), size(d))) * (2.0 * f32::EPSILON);
         }
         for (at, (low, high)) in low.iter_mut().zip(high).enumerate() {
             let [x, y, z] = Self::axis(at);
@@ -201,8 +202,8 @@ impl<const N: usize> Volume for KDop<N> {
                 let product =
                     |child: &View| (x * child[X + l] + y * child[Y + l]) + z * child[Z + l];
                 let [a, b, c, d] = [product(a), product(b), product(c), product(d)];
-                low[l] = least(least(a, b), least(c, d)) - slack[l];
-                high[l] = most(most(a, b), most(c, d)) + slack[l];
+                low[l] = smaller(smaller(a, b), smaller(c, d)) - slack[l];
+                high[l] = larger(larger(a, b), larger(c, d)) + slack[l];
             }
         }
     }

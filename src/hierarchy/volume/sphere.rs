@@ -4,7 +4,7 @@ use bevy::math::{DVec3, Vec3, Vec3A, bounding::BoundingSphere, primitives::Spher
 
 use super::bounding::Volume;
 use crate::{
-    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, most},
+    cloth::{LANES, Lanes, MapInline, View, X, Y, Z, larger},
     hierarchy::probe::{Probe, ROUNDING},
 };
 
@@ -63,7 +63,7 @@ impl Volume for BoundingSphere {
                 let (x, y, z) = (child[X + l] - x, child[Y + l] - y, child[Z + l] - z);
                 x * x + y * y + z * z
             };
-            let farthest = most(most(square(a), square(b)), most(square(c), square(d)));
+            let farthest = larger(larger(square(a), square(b)), larger(square(c), square(d)));
             (into[0][l], into[1][l], into[2][l]) = (x, y, z);
             into[3][l] = farthest.sqrt() * LEVEL_ROUNDING;
         }
@@ -79,7 +79,7 @@ impl Volume for BoundingSphere {
                 let (x, y, z) = (child[0][l] - x, child[1][l] - y, child[2][l] - z);
                 (x * x + y * y + z * z).sqrt() + child[3][l]
             };
-            let radius = most(most(reach(a), reach(b)), most(reach(c), reach(d)));
+            let radius = larger(larger(reach(a), reach(b)), larger(reach(c), reach(d)));
             (into[0][l], into[1][l], into[2][l]) = (x, y, z);
             into[3][l] = radius * LEVEL_ROUNDING;
         }

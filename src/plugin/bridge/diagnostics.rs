@@ -120,7 +120,10 @@ fn measure(cloths: Query<(&ClothState, &ClothStats)>, mut diagnostics: Diagnosti
     let valid = cloths.iter().filter(|(state, _)| state.is_valid);
     let valid = valid.map(|(_, stats)| stats);
     for (path, figure) in Plugin::TIMES.into_iter().chain(Plugin::COUNTS) {
-        diagnostics.add_measurement(&path, || valid.clone().map(figure).sum());
+        diagnostics.add_measurement(&path, || {
+            // A sum of nothing is −0.
+            0.0 + valid.clone().map(figure).sum::<f64>()
+        });
     }
     diagnostics.add_measurement(&Plugin::STRETCH, || {
         let stretch = valid.map(|stats| f64::from(stats.stretch.structural));

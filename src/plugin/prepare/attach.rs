@@ -10,7 +10,7 @@ use crate::{
     solver::PinMotion,
 };
 
-/// Moves attached particles with their targets in this tick, by `motions`. A teleport moves them at once, from the
+/// Moves attached particles with their targets in this tick. A teleport moves them at once, from the
 /// frame that the cloth had before, and the other particles with them.
 pub(crate) fn follow_targets(cloth: &mut PrepareQueryItem, teleport_from: Option<ClothFrame>) {
     let (wanted, known) = (cloth.game.attachments(), &cloth.state.attachments);

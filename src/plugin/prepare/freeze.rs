@@ -29,8 +29,8 @@ fn carrier(targets: &Targets, state: &ClothState, frame: ClothFrame) -> Option<I
 /// velocities when it begins.
 ///
 /// # Errors
-/// [`Unusable`](crate::cloth::TransformError::Unusable), [`Missing`](crate::cloth::TransformError::Missing), and [`TargetError::NoTarget`] if the target of the first of
-/// `attachments` is gone or has no place.
+/// [`Unusable`](crate::cloth::TransformError::Unusable), [`Missing`](crate::cloth::TransformError::Missing), and [`TargetError::NoTarget`] if the target of its first
+/// attachment is gone or has no place.
 pub(crate) fn freeze(cloth: &mut PrepareQueryItem, targets: &Targets) -> Result<(), ClothError> {
     let (particles, state) = (&mut cloth.particles, &mut *cloth.state);
     let attachments = cloth.game.attachments();
@@ -75,7 +75,7 @@ pub(crate) fn freeze(cloth: &mut PrepareQueryItem, targets: &Targets) -> Result<
     Ok(())
 }
 
-/// Thaws a frozen cloth, whose entity is at `now`, in a tick of `seconds`. It gets the velocity of its carrier, or none
+/// Thaws a frozen cloth in a tick of `seconds`. It gets the velocity of its carrier, or none
 /// if it `jumps`. Returns whether it was frozen.
 pub(crate) fn thaw(
     cloth: &mut PrepareQueryItem,

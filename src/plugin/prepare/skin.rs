@@ -140,7 +140,7 @@ fn begin_in_pose(cloth: &mut PrepareQueryItem) {
 }
 
 /// Takes over a pose that has been placed in `scratch`, as a tick begins in which the cloth's frame changes by
-/// `new_from_old`. That is `None` if the cloth is new or teleports.
+/// `new_from_old`. It `goes_on` unless it is new or teleports.
 pub(crate) fn move_with_pose(
     cloth: &mut PrepareQueryItem,
     new_from_old: Isometry3d,
@@ -187,9 +187,8 @@ fn teleport_to_pose([from, to]: [&Pose; 2], turn: Quat, particles: &mut Mut<Clot
     }
 }
 
-/// Moves held particles with the pose in this tick, by `motions`. Keeps the others in their ball and outside their
-/// backstop. `from` and `to` are in the cloth's frame. They are equal if the cloth is new or teleports, and held
-/// particles are put there.
+/// Moves held particles with the pose in this tick. Keeps the others in their ball and outside their
+/// backstop. If the cloth is new or `jumps`, held particles are put where the pose ends.
 fn follow_pose(cloth: &mut PrepareQueryItem, jumps: bool) {
     let ClothScratch {
         pose: from,

@@ -74,7 +74,7 @@ impl BuildRequest {
 
 /// A task that builds what is requested.
 #[derive(Debug)]
-pub(crate) struct Building {
+pub(crate) struct BuildTask {
     recipe: Recipe,
     task: Task<Result<Shared, ClothError>>,
     /// The cloth that needs it in its next tick, if it is built ahead.
@@ -88,7 +88,7 @@ pub(crate) struct Building {
 /// All tasks that build.
 #[derive(Debug, Default)]
 pub(crate) struct AsyncBuilds {
-    pub all: Vec<Building>,
+    pub all: Vec<BuildTask>,
 }
 
 impl AsyncBuilds {
@@ -143,7 +143,7 @@ impl AsyncBuilds {
         });
         let pool = AsyncComputeTaskPool::get_or_init(TaskPool::default);
         let is_claimed = Arc::new(AtomicBool::new(false));
-        self.all.push(Building {
+        self.all.push(BuildTask {
             recipe: request.recipe.clone(),
             cloth,
             is_claimed: is_claimed.clone(),

@@ -132,7 +132,7 @@ impl ClothBuilt {
         let known = recipe.and_then(|recipe| recipe.grain.as_ref());
         let grained = self.from.as_ref().and_then(|from| from.changes.grain);
         let is_unchanged = changed.is_some() && changed == grained;
-        known == wanted || is_unchanged && known.is_some() && wanted.is_some()
+        (is_unchanged && known.is_some() && wanted.is_some()) || known == wanted
     }
 
     /// Whether it is torn by these tears, which were last changed then. Values are compared only where they were written.

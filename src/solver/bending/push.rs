@@ -7,7 +7,7 @@
 
 use super::plate::Plate;
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, MapInline, W, most},
+    cloth::{Block, LANES, Lanes, Layout, MapInline, W, larger},
     solver::kernels::{EDGE, Kernels, Moments, Stiffness, Vec3Lanes},
 };
 
@@ -80,7 +80,7 @@ impl Push {
             for (block, bound) in blocks.iter().zip(&self.bounds[end]) {
                 let view = block.view();
                 for l in 0..LANES {
-                    largest[l] = most(view[W + l] * bound[l], largest[l]);
+                    largest[l] = larger(view[W + l] * bound[l], largest[l]);
                 }
             }
         }

@@ -43,7 +43,7 @@ use super::{
     step::{DAMPING_REFERENCE, SubStep, TickStep},
 };
 use crate::cloth::{
-    Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z, most,
+    Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z, larger,
 };
 use list::ForceList;
 
@@ -141,9 +141,9 @@ impl SoftSprings {
             for (block, sum) in blocks.iter().zip(self.sums_of(row)) {
                 let view = block.view();
                 for l in 0..LANES {
-                    largest[l] = most(view[W + l] * sum[l], largest[l]);
+                    largest[l] = larger(view[W + l] * sum[l], largest[l]);
                     for at in [X, Y, Z] {
-                        farthest[l] = most(view[at + l].abs(), farthest[l]);
+                        farthest[l] = larger(view[at + l].abs(), farthest[l]);
                     }
                 }
             }

@@ -4,13 +4,13 @@ use bevy::math::Vec3;
 
 use crate::cloth::Surface;
 
-/// How far a cut moves its sides apart, each, as a fraction of the way to the middle of the faces beside it.
+/// How far a cut moves its sides apart, each at most, as a fraction of the way to the middles of the faces around.
 const HALF_WIDTH: f32 = 0.02;
 
 /// A corner of a face, at an end of one of its two edges.
 #[derive(Clone, Copy)]
 struct Corner {
-    /// The parents of the edge's ends: of this one, and of the other.
+    /// The parent of this particle, and what the edge's other end was before anything was torn.
     edge: [u32; 2],
     particle: u32,
     /// Direction across the edge, into the face.
@@ -41,26 +41,22 @@ impl Surface {
             let edges = around.chunk_by(|a, b| a.edge == b.edge);
             for sides in edges.flat_map(|faces| faces.windows(2)) {
                 let [a, b] = [sides[0], sides[1]];
-                if a.particle != b.particle {
-                    let away = (a.inward - b.inward).normalize_or_zero();
+                let away = (a.inward - b.inward).normalize_or_zero();
+                if a.particle != b.particle && away != Vec3::ZERO {
                     moves.extend([(a.particle, away), (b.particle, -away)]);
                 }
             }
-            // What met the others in a point alone.
-            let alone = |corner: &&Corner| moves.iter().all(|(of, _)| *of != corner.particle);
-            let alone: Vec<_> = around
-                .iter()
-                .filter(alone)
-                .map(|corner| (corner.particle, corner.middle))
-                .collect();
+            // What met the others in a point alone, or is folded onto them, moves to the middles of its faces.
+            let is_alone = |corner: &&Corner| moves.iter().all(|(of, _)| *of != corner.particle);
+            let to_middle = |corner: &Corner| (corner.particle, corner.middle.normalize_or_zero());
+            let alone: Vec<_> = around.iter().filter(is_alone).map(to_middle).collect();
             moves.extend(alone);
             moves.sort_by_key(|(of, _)| *of);
             let each = moves.chunk_by(|a, b| a.0 == b.0);
             let each = each.map(|of| (of[0].0, of.iter().map(|(_, by)| by).sum::<Vec3>()));
             let farthest = each.clone().map(|(_, by)| by.length()).fold(0.0, f32::max);
-            for (particle, by) in each {
-                parted[particle as usize] +=
-                    by * (HALF_WIDTH * size / farthest.max(f32::MIN_POSITIVE));
+            for (particle, by) in each.filter(|_| farthest > 0.0) {
+                parted[particle as usize] += by * (HALF_WIDTH * size / farthest);
             }
         }
         parted
@@ -83,7 +79,7 @@ impl Surface {
                 let ways = others.map(|other| places[other as usize] - places[particle as usize]);
                 corners.extend([[0, 1], [1, 0]].map(|[along, third]| {
                     Corner {
-                        edge: [parent(particle), parent(others[along])],
+                        edge: [parent(particle), self.origin_of(others[along])],
                         particle,
                         inward: ways[third]
                             .reject_from_normalized(ways[along].normalize_or_zero())

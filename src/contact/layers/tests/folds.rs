@@ -10,7 +10,7 @@ use bevy::math::{DVec3, Vec3, Vec3A, Vec3Swizzles};
 
 use super::{
     Sheeted, participants,
-    search::{Brute, Feature, ROUNDING, distance, named, places, shapes},
+    search::{Brute, Feature, ROUNDING, distance, named, near_features, places, shapes},
     settings,
     thrown::Draw,
     torn::rolled,
@@ -298,12 +298,9 @@ fn what_folds_and_unfolds_is_found() {
             contact.motion.measure_all();
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
-            let mut contacts = HashSet::new();
-            for candidate in contact.near.near() {
-                let of = candidate.particles.map(|particle| particle - before);
-                let (first, second) = of.split_at(candidate.split as usize);
-                contacts.insert(named(first, second));
-            }
+            let of_both = near_features(&contact).into_iter();
+            let own = |of: Vec<u32>| -> Vec<u32> { of.iter().map(|at| at - before).collect() };
+            let contacts: HashSet<Feature> = of_both.map(|(a, b)| (own(a), own(b))).collect();
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             pairs.push(contact.pairs());

@@ -51,6 +51,23 @@ fn nearest_faces<'a>(of: impl Iterator<Item = &'a Candidate>) -> HashMap<u32, f3
     nearest
 }
 
+/// All features that are near each other. Those that are no contacts are left out since others push them: of each vertex the
+/// nearest face is pushed.
+pub(super) fn near_features(contact: &MutualContact) -> HashSet<Feature> {
+    let near = &contact.near;
+    let contacts = || {
+        let all = near.contacts(&contact.motion);
+        all.map(|(index, _)| near.candidate(index))
+    };
+    let known: HashSet<Feature> = contacts().map(feature).collect();
+    for left_out in near.near().filter(|of| !known.contains(&feature(of))) {
+        assert!(!left_out.is_pushed && !left_out.may_pass, "{left_out:?}");
+    }
+    let pushed = nearest_faces(contacts().filter(|contact| contact.is_pushed));
+    assert_eq!(nearest_faces(near.near()), pushed);
+    near.near().map(feature).collect()
+}
+
 /// A pair, whichever way its features are named.
 pub(super) fn named(first: &[u32], second: &[u32]) -> Feature {
     let sorted = |of: &[u32]| {
@@ -263,11 +280,7 @@ fn no_pair_is_lost_on_the_way() {
             contact.motion.measure_all();
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
-            let known: HashSet<Feature> = contact.near.near().map(feature).collect();
-            let all = contact.near.contacts(&contact.motion);
-            let pushed = all.map(|(index, _)| contact.near.candidate(index));
-            let pushed = nearest_faces(pushed.filter(|contact| contact.is_pushed));
-            assert_eq!(nearest_faces(contact.near.near()), pushed, "step {step}");
+            let known = near_features(&contact);
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             let places = places(&cloths[0]);

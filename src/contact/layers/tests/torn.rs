@@ -6,7 +6,7 @@ use bevy::math::{DVec3, Vec3};
 
 use super::{
     Sheeted, participants,
-    search::{Brute, Feature, ROUNDING, feature, nearest, places},
+    search::{Brute, Feature, ROUNDING, feature, near_features, nearest, places},
     settings,
     thrown::Draw,
 };
@@ -89,7 +89,7 @@ fn no_pair_of_a_torn_cloth_is_lost() {
             contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let listed: HashSet<Feature> = contact.near.all().map(feature).collect();
-            let contacts: HashSet<Feature> = contact.near.near().map(feature).collect();
+            let contacts = near_features(&contact);
             contact.motion.pass(&of, 0.05 * thickness);
             contact.near.pass(&of, &contact.motion);
             brute.near(&places(&cloths[0]), reach, |feature, apart| {
@@ -117,10 +117,11 @@ fn no_pair_of_a_torn_cloth_is_lost() {
 }
 
 /// Cloth that is crumpled, but does not intersect itself, is torn anywhere. As its sides are moved apart, faces beside a torn edge never
-/// pass each other. No others do either, but for those that meet in a point alone, in the wildest half.
+/// pass each other. Others may, which meet in a point alone, but not in the milder half. In a second step, sides of the first are a
+/// little apart already, and are parted as if they were not: of these cloths fewer than one in a hundred crosses beside an edge.
 #[test]
 fn sides_of_a_cut_part_without_crossing() {
-    let (mut mild, mut wild) = (0, 0);
+    let (mut mild, mut wild, mut in_two_steps, mut crossed) = (0, 0, 0, 0);
     for seed in 1..=4_000 {
         let mut draw = Draw(7919 * seed);
         let whole = Sheeted::of_kind(4, 1.0, seed % 2 == 0, |at| at);
@@ -134,22 +135,31 @@ fn sides_of_a_cut_part_without_crossing() {
         }
         let mut edges = Brute::new(&whole).edges;
         edges.retain(|_| draw.next() < -0.4);
-        let surface = whole.surface.torn(&edges).expect("edges");
+        // In one step, or in two.
+        let first = edges.len() / (1 + seed as usize / 2 % 2);
+        let (mut before, mut parted) = (whole.surface.clone(), places);
+        for edges in [&edges[..first], &edges] {
+            let surface = Arc::new(before.torn(edges).expect("edges"));
+            let parents = surface.parents_in(&before).expect("one whole surface");
+            let copied: Vec<Vec3> = (parents.iter())
+                .map(|parent| parted[*parent as usize])
+                .collect();
+            parted = surface.parted(&copied, |particle| parents[particle as usize]);
+            before = surface;
+        }
+        let surface = before;
         if surface.len() == rest.len() {
             continue;
         }
         let origin = |particle| surface.origin_of(particle);
-        let copied: Vec<Vec3> = (0..surface.len() as u32)
-            .map(|particle| places[origin(particle) as usize])
-            .collect();
-        let parted = surface.parted(&copied, origin);
         // Of 0.6 spacings.
-        if strength < 0.2 {
+        if strength < 0.2 && first == edges.len() {
             assert_eq!(intersections(&[(&surface, parted)]), 0, "{seed}");
             mild += 1;
             continue;
         }
-        wild += 1;
+        let is_whole = first == edges.len();
+        let mut has_passed = false;
         let faces = surface.triangles();
         for (index, a) in faces.iter().enumerate() {
             for b in &faces[..index] {
@@ -163,9 +173,15 @@ fn sides_of_a_cut_part_without_crossing() {
                         let mut edges = [[p, q], [q, r], [r, p]].into_iter();
                         edges.any(|edge| passes(edge, corners[*other]))
                     });
-                assert!(!is_passed, "{seed}: {a:?} {b:?}");
+                assert!(!is_passed || !is_whole, "{seed}: {a:?} {b:?}");
+                has_passed |= is_passed;
             }
         }
+        wild += usize::from(is_whole);
+        in_two_steps += usize::from(!is_whole);
+        crossed += usize::from(has_passed);
     }
-    assert!(mild > 500 && wild > 300, "{mild} {wild}");
+    println!("{mild} {wild} {in_two_steps}: {crossed}");
+    assert!(mild > 250 && wild > 150 && in_two_steps > 400);
+    assert!(100 * crossed < in_two_steps);
 }

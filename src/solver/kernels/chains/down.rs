@@ -13,15 +13,12 @@
 
 use super::{
     beside::Chains,
-    link::{Before, Behind, Link, SpringBand, equation},
+    link::{Before, Behind, Link, NOT_PULLED, SpringBand, equation},
 };
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
     solver::kernels::each::three,
 };
-
-/// Multipliers of springs that have not pulled.
-const NONE: Lanes = [0.0; LANES];
 
 /// Eliminates the springs before. With `CROSSES`, the result is moved by a lane to the right.
 #[inline(always)]
@@ -114,10 +111,10 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(chains: &mut Chains, springs: 
             let own = (springs, first + block);
             if OBLIQUE && block == last {
                 let b = b.shifted();
-                eliminate::<true, DAMPED, false>([a, b], own, &NONE, before, link);
+                eliminate::<true, DAMPED, false>([a, b], own, &NOT_PULLED, before, link);
             } else {
                 let b = b.view();
-                eliminate::<false, DAMPED, false>([a, b], own, &NONE, before, link);
+                eliminate::<false, DAMPED, false>([a, b], own, &NOT_PULLED, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }
@@ -189,7 +186,7 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, springs: &SpringBand) 
             let block = block as usize;
             let ends = [upper[block].view(), lower[block].view()];
             let at = (row + 1) * strip + block;
-            let pulled = if AGAIN { &pulled[at] } else { &NONE };
+            let pulled = if AGAIN { &pulled[at] } else { &NOT_PULLED };
             let own = (springs, springs.first_of(row) + block);
             eliminate::<false, false, AGAIN>(ends, own, pulled, before, link);
         }

@@ -1,7 +1,7 @@
 //! One spring of a chain, in the system of equations of all springs of that chain.
 
 use crate::{
-    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, MapInline, View, W, X, most},
+    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, MapInline, View, W, X, larger},
     solver::kernels::{each::three, step_scale::StepScale},
 };
 
@@ -14,6 +14,9 @@ const REGULARISATION: f32 = 1.0e-3;
 /// Added for the relative error of a squared length: a chain between pins too far apart pulls with C/ε, and a particle
 /// beside its line by y would be thrown beyond it, by C/ε × y.
 const STRAINED: f32 = 0.2;
+
+/// Multipliers of springs that have not pulled.
+pub(crate) const NOT_PULLED: Lanes = [0.0; LANES];
 
 /// Eight springs, each of a chain of its own, between the forward and the backward pass.
 #[derive(Debug, Default, Clone, Copy)]
@@ -245,7 +248,7 @@ pub(crate) fn measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut 
     for (pulled, softness) in pulled.iter().zip(softness) {
         for l in 0..LANES {
             let given = (pulled[l] * softness[l]).abs();
-            largest[l] = most(given, largest[l]);
+            largest[l] = larger(given, largest[l]);
         }
     }
 }

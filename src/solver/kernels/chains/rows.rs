@@ -12,7 +12,7 @@
 
 use super::{
     ends::{BESIDE, Ends, GROUP, Reduced, Wide},
-    link::{Before, Behind, Link, SpringBand, equation},
+    link::{Before, Behind, Link, NOT_PULLED, SpringBand, equation},
 };
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
@@ -43,9 +43,6 @@ impl RowScratch {
         }
     }
 }
-
-/// Multipliers of springs that have not pulled.
-const NONE: Lanes = [0.0; LANES];
 
 /// The state of a lane's strip up to a spring.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +77,7 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAI
     spike: &mut Lanes,
 ) {
     let at = first + block;
-    let pulled = if AGAIN { &pulled[block] } else { &NONE };
+    let pulled = if AGAIN { &pulled[block] } else { &NOT_PULLED };
     let own = [&springs.softness[at], &springs.hold[at], pulled];
     for l in 0..LANES {
         let ([x, y, z], [diagonal, right]) = equation::<DAMPED, AGAIN>([a, b], springs, own, l);

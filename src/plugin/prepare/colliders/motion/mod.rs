@@ -275,6 +275,7 @@ impl ColliderMotion {
         self.last = None;
         self.skinned.stop();
     }
+
     /// Whether the collider may come within `reach` of a point of the world (m).
     pub fn comes_near(&self, point: Vec3, reach: f32) -> bool {
         let offset = point - self.middle;
