@@ -211,13 +211,13 @@ impl ListSolver {
     pub fn solve_there(&mut self, kernels: &Kernels) {
         let (rows, step_scale) = (&mut self.rows, &self.step_scale);
         self.chains.solve_there(rows, step_scale, kernels);
-        (kernels.relax_packets)(rows, &self.packets, &mut self.pulls, step_scale, false);
+        (kernels.relax_packets_there)(rows, &self.packets, &mut self.pulls, step_scale);
     }
 
     /// The same backward, after [`solve_there`](Self::solve_there).
     pub fn solve_back(&mut self, kernels: &Kernels) {
         let (rows, step_scale) = (&mut self.rows, &self.step_scale);
-        (kernels.relax_packets)(rows, &self.packets, &mut self.pulls, step_scale, true);
+        (kernels.relax_packets_back)(rows, &self.packets, &mut self.pulls, step_scale);
         self.chains.solve_back(rows, step_scale, kernels);
     }
 

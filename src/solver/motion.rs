@@ -31,7 +31,7 @@ pub(crate) struct MotionConstraints {
 }
 
 /// Eight balls that move along straight lines in the tick: their starts and their displacements (m).
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Balls {
     from: [Lanes; 3],
     displacement: [Lanes; 3],
@@ -39,6 +39,12 @@ struct Balls {
 }
 
 impl Balls {
+    const NONE: Self = Self {
+        from: [[0.0; LANES]; 3],
+        displacement: [[0.0; LANES]; 3],
+        radius: [0.0; LANES],
+    };
+
     fn set(&mut self, lane: usize, from: Vec3, to: Vec3, radius: f32) {
         let displacement = to - from;
         for axis in 0..3 {
@@ -142,11 +148,11 @@ impl MotionConstraints {
         let blocks = self.layout.blocks();
         let free = Balls {
             radius: [f32::INFINITY; LANES],
-            ..Balls::default()
+            ..Balls::NONE
         };
         self.balls.resize(blocks, free);
         if has_backstops {
-            self.backstops.resize(blocks, Balls::default());
+            self.backstops.resize(blocks, Balls::NONE);
         }
     }
 

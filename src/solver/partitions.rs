@@ -1,7 +1,7 @@
 //! Partitions of rows on several threads.
 
 use std::{
-    hint, mem,
+    hint,
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
     time::Duration,
 };
@@ -22,28 +22,23 @@ pub(super) const MAX_PARTITIONS: usize = 16;
 /// So long a partition that is done looks out for the others before its thread may sleep, which would take as long to wake.
 const PATIENCE: Duration = Duration::from_micros(100);
 
-/// Does `work` on each part: the last on this thread, each of the others in a task of its own. One part alone needs no pool.
+/// Does `work` on each part: the last on this thread, each of the others in a task of its own.
 pub(super) fn in_partitions<T: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) + Sync) {
     let work = &work;
     let left = &AtomicUsize::new(0);
-    let mut parts = parts.into_iter();
-    let Some(mut last) = parts.next() else {
-        return;
-    };
-    let mut parts = parts.peekable();
-    if parts.peek().is_none() {
-        return work(last);
-    }
     pool().scope(|scope| {
-        for next in parts {
-            let part = mem::replace(&mut last, next);
-            left.fetch_add(1, Ordering::Relaxed);
-            scope.spawn(async move {
+        let mut parts = parts.into_iter().peekable();
+        while let Some(part) = parts.next() {
+            if parts.peek().is_some() {
+                left.fetch_add(1, Ordering::Relaxed);
+                scope.spawn(async move {
+                    work(part);
+                    left.fetch_sub(1, Ordering::Release);
+                });
+            } else {
                 work(part);
-                left.fetch_sub(1, Ordering::Release);
-            });
+            }
         }
-        work(last);
         let since = Instant::now();
         while left.load(Ordering::Acquire) > 0 && since.elapsed() < PATIENCE {
             hint::spin_loop();

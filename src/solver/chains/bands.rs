@@ -106,31 +106,37 @@ impl GridBands {
         sums
     }
 
-    /// Raises `longest` to the lengths of the springs that begin in these rows.
+    /// The lengths of the springs that begin in these rows.
     pub fn measure_rows(
         &self,
         blocks: &[Block],
         layout: Layout,
         rows: Range<usize>,
         kernels: &Kernels,
-        longest: &mut Longest,
-    ) {
+    ) -> Longest {
+        let mut longest = Longest::default();
         let strip = layout.strip as usize;
         let [across, _] = &self.across;
         let last = layout.rows as usize - 1;
         for row in rows {
             let (upper, lower) = blocks[row * strip..].split_at(strip);
-            (kernels.measure_within)(upper, across.holds_of(row, strip), longest);
+            (kernels.measure_within)(upper, across.holds_of(row, strip), &mut longest);
             if row < last {
                 let lower = &lower[..strip];
-                (kernels.measure_down)(upper, lower, self.down.holds_of(row, strip), longest);
+                (kernels.measure_down)(upper, lower, self.down.holds_of(row, strip), &mut longest);
                 if let Some([right, left]) = &self.diagonals {
                     let left = left.holds_of(Direction::Left.row(row + 1, last + 1), strip);
-                    (kernels.measure_diagonal)(upper, lower, right.holds_of(row, strip), longest);
-                    (kernels.measure_diagonal)(lower, upper, left, longest);
+                    (kernels.measure_diagonal)(
+                        upper,
+                        lower,
+                        right.holds_of(row, strip),
+                        &mut longest,
+                    );
+                    (kernels.measure_diagonal)(lower, upper, left, &mut longest);
                 }
             }
         }
+        longest
     }
 
     /// The stretch by the lengths of the longest springs.

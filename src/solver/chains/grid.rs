@@ -8,7 +8,10 @@ use super::{
 use crate::{
     cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W},
     solver::{
-        kernels::{Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, StepScale},
+        kernels::{
+            Chains, Direction, GROUP, Kernels, Longest, RowChains, RowScratch, Scratch, SpringBand,
+            StepScale,
+        },
         partitions::{MAX_PARTITIONS, in_partitions, take},
         spring_solver::{Motion, SolvedSubstep, SpringSolver},
         stretch::Stretch,
@@ -32,6 +35,13 @@ pub(crate) struct GridSolver {
     second_pass: SecondPass,
     /// That softnesses hold for.
     step_scale: StepScale,
+}
+
+/// Results of a partition.
+#[derive(Default, Clone, Copy)]
+struct PartitionResult {
+    moved: Lanes,
+    longest: Longest,
 }
 
 impl GridSolver {
@@ -63,26 +73,32 @@ impl GridSolver {
         self.layout.blocks()
     }
 
-    /// Solves all chains that lead from row to row in one direction, in this many partitions.
+    /// Solves all chains that lead from row to row in one direction.
     pub(crate) fn solve_down(
         &mut self,
         blocks: &mut [Block],
         direction: Direction,
         kernels: &Kernels,
-        partitions: usize,
     ) {
         let Some(springs) = self.bands.of(direction) else {
             return;
         };
         let strip = self.layout.strip as usize;
-        if partitions == 1 {
-            (kernels.solve_chains)(&mut self.scratch.all(direction, strip, blocks), springs);
-            return;
-        }
-        let all = self.scratch.split(direction, (strip, partitions), blocks);
-        in_partitions(all, |mut chains| {
-            (kernels.solve_chains)(&mut chains, springs);
-        });
+        let mut chains = self.scratch.all(direction, strip, blocks);
+        solve(&mut chains, springs, kernels);
+    }
+
+    /// Solves all chains within rows.
+    pub(crate) fn solve_across(&mut self, blocks: &mut [Block], kernels: &Kernels) {
+        let mut rows = RowChains {
+            blocks,
+            first: 0,
+            of: self.numbers.len(),
+            numbers: &self.numbers,
+            scratch: &mut self.rows[0],
+            pulled: &mut self.second_pass.pulled[0],
+        };
+        solve_rows(&mut rows, &self.bands.across, kernels);
     }
 
     /// The second pass over rows and columns, after all chains were solved in this many partitions.
@@ -108,8 +124,11 @@ impl GridSolver {
 
     /// The angular frequency of the fastest ripples (rad/s), in which neighbours swing against each other: ω² = 4 Σ F/(m l) over
     /// a chain across and one down, with tensions F in springs of length l. That of the fourth of the eight strips of columns: a
-    /// membrane has it everywhere, and what hangs by a corner is not a membrane.
-    fn ripple(&self, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
+    /// membrane has it everywhere, and what hangs by a corner is not a membrane. 0 if nothing is measured.
+    fn ripple_if(&self, measures: bool, blocks: &[Block], given: &[Lanes; 2]) -> f32 {
+        if !measures {
+            return 0.0;
+        }
         let mut strips = if self.bands.is_by_row() {
             // Where springs differ, the longest need not pull most.
             self.bands
@@ -138,7 +157,7 @@ impl GridSolver {
         partitions: usize,
     ) {
         for direction in [Direction::Right, Direction::Left] {
-            self.solve_down(blocks, direction, kernels, partitions);
+            self.down_in_partitions(blocks, direction, kernels, partitions);
         }
     }
 
@@ -149,8 +168,28 @@ impl GridSolver {
         kernels: &Kernels,
         partitions: usize,
     ) {
-        self.solve_across(blocks, kernels, partitions);
-        self.solve_down(blocks, Direction::Down, kernels, partitions);
+        if partitions > 1 {
+            self.across_in_partitions(blocks, kernels, partitions);
+        } else {
+            self.solve_across(blocks, kernels);
+        }
+        self.down_in_partitions(blocks, Direction::Down, kernels, partitions);
+    }
+
+    fn down_in_partitions(
+        &mut self,
+        blocks: &mut [Block],
+        direction: Direction,
+        kernels: &Kernels,
+        partitions: usize,
+    ) {
+        if partitions == 1 {
+            self.solve_down(blocks, direction, kernels);
+        } else if let Some(springs) = self.bands.of(direction) {
+            let strip = self.layout.strip as usize;
+            let all = self.scratch.split(direction, (strip, partitions), blocks);
+            in_partitions(all, |mut partition| solve(&mut partition, springs, kernels));
+        }
     }
 
     /// Ends a sub-step in this many partitions. Behind the grid's blocks there may be others.
@@ -160,57 +199,87 @@ impl GridSolver {
         motion: &Motion,
         partitions: usize,
     ) -> SolvedSubstep {
-        let kernels = motion.kernels;
+        if partitions > 1 {
+            return self.end_in_partitions(blocks, motion, partitions);
+        }
+        let (kernels, measures) = (motion.kernels, motion.measures);
+        motion.tethers.pull(motion.anchors, blocks, 0, kernels);
+        let mut moved = [0.0; LANES];
+        (kernels.commit)(blocks, &mut moved);
+        let given = self.given_if(measures, kernels);
+        let stretch = measures.then(|| Stretch {
+            material: self.bands.material(&given),
+            ..self.measure(blocks, kernels)
+        });
+        SolvedSubstep {
+            moved,
+            stretch,
+            ripple: self.ripple_if(measures, blocks, &given),
+        }
+    }
+
+    fn end_in_partitions(
+        &self,
+        blocks: &mut [Block],
+        motion: &Motion,
+        partitions: usize,
+    ) -> SolvedSubstep {
+        let (kernels, measures) = (motion.kernels, motion.measures);
         let (strip, rows) = (self.layout.strip as usize, self.layout.rows as usize);
         let border = |partition| rows * partition / partitions;
-        let mut found = [Longest::default(); MAX_PARTITIONS];
-        let found = &mut found[..partitions];
+        let mut found = [PartitionResult::default(); MAX_PARTITIONS];
         let mut rest = &mut *blocks;
-        let parts = found.iter_mut().enumerate().map(|(partition, found)| {
-            let size = match partition + 1 == partitions {
-                true => rest.len(),
-                false => (border(partition + 1) - border(partition)) * strip,
-            };
-            (border(partition) * strip, take(&mut rest, size), found)
-        });
+        let parts = found
+            .iter_mut()
+            .take(partitions)
+            .enumerate()
+            .map(|(partition, found)| {
+                let size = match partition + 1 == partitions {
+                    true => rest.len(),
+                    false => (border(partition + 1) - border(partition)) * strip,
+                };
+                (border(partition) * strip, take(&mut rest, size), found)
+            });
         in_partitions(parts, |(first, blocks, found)| {
             let (tethers, anchors) = (motion.tethers, motion.anchors);
             tethers.pull(anchors, blocks, first, kernels);
             (kernels.commit)(blocks, &mut found.moved);
         });
-        let blocks = &*blocks;
-        if motion.measures {
-            in_partitions((0..partitions).zip(&mut *found), |(partition, found)| {
+        let given = self.given_if(measures, kernels);
+        let stretch = measures.then(|| {
+            let blocks = &*blocks;
+            in_partitions((0..partitions).zip(&mut found), |(partition, found)| {
                 let rows = border(partition)..border(partition + 1);
-                (self.bands).measure_rows(blocks, self.layout, rows, kernels, found);
+                found.longest = self.bands.measure_rows(blocks, self.layout, rows, kernels);
             });
-        }
-        let mut longest = Longest::default();
-        found.iter().for_each(|found| longest.merge(found));
-        let mut solved = SolvedSubstep {
-            moved: longest.moved,
-            stretch: None,
-            ripple: 0.0,
-        };
-        if motion.measures {
-            let (across, down) = (&self.bands.across, &self.bands.down);
-            let given = self.second_pass.given(across, down, kernels);
-            solved.ripple = self.ripple(blocks, &given);
-            solved.stretch = Some(Stretch {
+            let mut longest = Longest::default();
+            for found in &found[..partitions] {
+                longest.merge(&found.longest);
+            }
+            Stretch {
                 material: self.bands.material(&given),
                 ..self.bands.stretch(&longest)
-            });
+            }
+        });
+        SolvedSubstep {
+            moved: farthest(&found),
+            stretch,
+            ripple: self.ripple_if(measures, blocks, &given),
         }
-        solved
     }
 
-    /// Solves the chains within rows, in this many partitions.
-    pub(crate) fn solve_across(
-        &mut self,
-        blocks: &mut [Block],
-        kernels: &Kernels,
-        partitions: usize,
-    ) {
+    /// The elongations of elastic springs across and down (m), if they are measured.
+    fn given_if(&self, measures: bool, kernels: &Kernels) -> [Lanes; 2] {
+        if measures {
+            self.second_pass
+                .given(&self.bands.across, &self.bands.down, kernels)
+        } else {
+            [[0.0; LANES]; 2]
+        }
+    }
+
+    /// Solves the chains within rows.
+    fn across_in_partitions(&mut self, blocks: &mut [Block], kernels: &Kernels, partitions: usize) {
         let strip = self.layout.strip as usize;
         let rows = self.layout.rows as usize;
         let groups = rows.div_ceil(GROUP);
@@ -233,9 +302,7 @@ impl GridSolver {
             }
         });
         let springs = &self.bands.across;
-        in_partitions(parts, |mut rows| {
-            (kernels.solve_rows)(&mut rows, springs, false);
-        });
+        in_partitions(parts, |mut part| solve_rows(&mut part, springs, kernels));
     }
 }
 
@@ -271,12 +338,41 @@ impl SpringSolver for GridSolver {
     }
 
     fn measure(&self, blocks: &[Block], kernels: &Kernels) -> Stretch {
-        let (rows, mut longest) = (0..self.layout.rows as usize, Longest::default());
-        (self.bands).measure_rows(blocks, self.layout, rows, kernels, &mut longest);
-        self.bands.stretch(&longest)
+        let rows = 0..self.layout.rows as usize;
+        self.bands
+            .stretch(&self.bands.measure_rows(blocks, self.layout, rows, kernels))
     }
 
     fn boxed(&self) -> Box<dyn SpringSolver> {
         Box::new(self.clone())
     }
+}
+
+/// Solves chains.
+fn solve(chains: &mut Chains, springs: &SpringBand, kernels: &Kernels) {
+    if springs.kept < 1.0 {
+        (kernels.solve_damped_chains)(chains, springs);
+    } else {
+        (kernels.solve_chains)(chains, springs);
+    }
+}
+
+/// Solves chains within rows.
+fn solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2], kernels: &Kernels) {
+    if springs[0].kept < 1.0 {
+        (kernels.solve_damped_rows)(rows, springs);
+    } else {
+        (kernels.solve_rows)(rows, springs);
+    }
+}
+
+/// The largest squared displacements of all partitions (m²), lane by lane.
+fn farthest(all: &[PartitionResult]) -> Lanes {
+    let larger = |mut farthest: Lanes, found: &PartitionResult| {
+        for (farthest, own) in farthest.iter_mut().zip(&found.moved) {
+            *farthest = farthest.max(*own);
+        }
+        farthest
+    };
+    all.iter().fold([0.0; LANES], larger)
 }

@@ -7,7 +7,7 @@
 //! for those equations alone that need it.
 
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, MapInline},
+    cloth::{Block, LANES, Lanes, Layout},
     solver::{
         kernels::{
             Columns, Kernels, Residuals, RowChains, RowScratch, RowSprings, Scratch, SpringBand,
@@ -216,7 +216,7 @@ impl SecondPass {
             let left = take(&mut all, border(partition + 1) - border(partition));
             (border(partition), left, found)
         });
-        in_partitions(parts, |(first, left, found)| {
+        let work = |(first, left, found): (usize, &mut [f32], &mut Residuals)| {
             found.down.fill([0.0; LANES]);
             let above = first.saturating_sub(1);
             (kernels.note_places)(&blocks[above * strip..][..strip], found);
@@ -224,7 +224,12 @@ impl SecondPass {
                 measure_row(blocks, row, None, grid, pulled, found, kernels);
                 *left = found.across;
             }
-        });
+        };
+        if partitions > 1 {
+            in_partitions(parts, work);
+        } else {
+            parts.for_each(work);
+        }
         self.columns.left.fill(0.0);
         for found in &self.found[..partitions] {
             for (left, found) in self.columns.left.iter_mut().zip(&found.down) {
@@ -245,7 +250,11 @@ impl SecondPass {
             scratch: grid.rows,
             pulled: in_rows,
         };
-        (kernels.solve_rows)(&mut rows, grid.across, true);
+        if rows.pulled.is_empty() {
+            (kernels.solve_rows)(&mut rows, grid.across);
+        } else {
+            (kernels.solve_rows_again)(&mut rows, grid.across);
+        }
         let found = &mut self.found[0];
         found.down.fill([0.0; LANES]);
         for &row in &self.rows.chosen {
@@ -275,7 +284,11 @@ impl SecondPass {
             behind,
             pulled: from_above,
         };
-        (kernels.solve_columns)(&mut columns, grid.down);
+        if columns.pulled.is_empty() {
+            (kernels.solve_columns)(&mut columns, grid.down);
+        } else {
+            (kernels.solve_columns_again)(&mut columns, grid.down);
+        }
         let chosen = &self.columns.chosen;
         let found = &mut self.found[0];
         found.down.fill([0.0; LANES]);
@@ -304,15 +317,33 @@ fn measure_row(
 ) {
     let [border, inner] = grid.across;
     let strip = found.down.len();
-    let above = row.saturating_sub(1);
     let is_border = row == 0 || (row + 1) * strip == blocks.len();
     let across = if is_border { border } else { inner };
     let own = row * strip..(row + 1) * strip;
     let blocks = &blocks[own.clone()];
+    let is_elastic = !pulled[0].is_empty();
+    let of_row = |pulled: &'_ Vec<Lanes>| {
+        if is_elastic {
+            own.clone()
+        } else {
+            0..pulled.len()
+        }
+    };
     let springs = RowSprings {
         kinds: [across, grid.down],
-        first: [across.first_of(row), grid.down.first_of(above)],
-        pulled: [0, 1].map_inline(|at| pulled[at].get(own.clone()).unwrap_or_default()),
+        first: [
+            across.first_of(row),
+            grid.down.first_of(row.saturating_sub(1)),
+        ],
+        pulled: [
+            &pulled[0][of_row(&pulled[0])],
+            &pulled[1][of_row(&pulled[1])],
+        ],
     };
-    (kernels.measure_left)(blocks, at, &springs, found);
+    match (at, is_elastic) {
+        (None, false) => (kernels.measure_left)(blocks, &springs, found),
+        (None, true) => (kernels.measure_elastic_left)(blocks, &springs, found),
+        (Some(at), false) => (kernels.measure_left_at)(blocks, at, &springs, found),
+        (Some(at), true) => (kernels.measure_elastic_left_at)(blocks, at, &springs, found),
+    }
 }

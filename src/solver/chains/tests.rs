@@ -142,10 +142,10 @@ fn solve_family(of: &mut GridSolver, step: (u32, i32), particles: &mut ClothPart
     let kernels = SimdLevel::Auto.kernels();
     let blocks = particles.blocks_mut();
     match step {
-        (0, 1) => of.solve_across(blocks, &kernels, 1),
-        (1, 0) => of.solve_down(blocks, Direction::Down, &kernels, 1),
-        (1, 1) => of.solve_down(blocks, Direction::Right, &kernels, 1),
-        _ => of.solve_down(blocks, Direction::Left, &kernels, 1),
+        (0, 1) => of.solve_across(blocks, &kernels),
+        (1, 0) => of.solve_down(blocks, Direction::Down, &kernels),
+        (1, 1) => of.solve_down(blocks, Direction::Right, &kernels),
+        _ => of.solve_down(blocks, Direction::Left, &kernels),
     }
 }
 
@@ -361,9 +361,9 @@ fn what_is_solved_again_goes_on_from_its_pull() {
                     particles.displacements().collect()
                 };
                 let start = displaced(&particles);
-                spring_solver.solve_across(particles.blocks_mut(), &kernels, 1);
+                spring_solver.solve_across(particles.blocks_mut(), &kernels);
                 if down {
-                    spring_solver.solve_down(particles.blocks_mut(), Direction::Down, &kernels, 1);
+                    spring_solver.solve_down(particles.blocks_mut(), Direction::Down, &kernels);
                 }
                 let once = displaced(&particles);
                 let (second_pass, mut springs) = spring_solver.second_pass(1);
@@ -412,8 +412,8 @@ fn a_quiet_cloth_is_solved_once() {
                 measures: true,
             };
             let (mut once, mut all) = (start.clone(), start.clone());
-            spring_solver.solve_across(once.blocks_mut(), &kernels, 1);
-            spring_solver.solve_down(once.blocks_mut(), Direction::Down, &kernels, 1);
+            spring_solver.solve_across(once.blocks_mut(), &kernels);
+            spring_solver.solve_down(once.blocks_mut(), Direction::Down, &kernels);
             spring_solver.substep(all.blocks_mut(), &motion, 1);
             let moves = once.displacements().zip(all.displacements());
             let farthest = moves.map(|(a, b)| a.distance(b)).fold(0.0, f32::max);

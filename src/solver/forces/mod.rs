@@ -84,7 +84,7 @@ impl Forces {
         self.layout = surface.layout();
         self.airflow = Airflow::of(inputs.air, inputs.pressure, self.airflow.take(), surface);
         let blocks = surface.layout().blocks();
-        self.linearized.resize(blocks, LinearForce::default());
+        self.linearized.resize(blocks, LinearForce::NONE);
         self.places.resize(blocks, [0.0; LANES]);
     }
 
@@ -143,7 +143,7 @@ impl Forces {
                 let stepped = (self.substep, index.is_multiple_of(self.wind_stride));
                 airflow.evaluate(particles, kernels, stepped, linearized, places);
             } else {
-                linearized.fill(LinearForce::default());
+                linearized.fill(LinearForce::NONE);
                 places.fill([0.0; LANES]);
             }
         }
@@ -171,8 +171,8 @@ impl Forces {
     }
 
     /// Their action on each particle.
-    pub(super) fn linearized(&self) -> &[LinearForce] {
-        &self.linearized
+    pub(super) fn linearized(&self) -> Option<&[LinearForce]> {
+        (!self.are_none()).then_some(&self.linearized)
     }
 
     /// Adds what depends on the end of a sub-step to its predicted displacements, with this weight (s²).

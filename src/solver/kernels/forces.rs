@@ -9,13 +9,20 @@ use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W, X};
 
 /// The action of forces on eight particles until their next evaluation: an acceleration of `push − drag (drag · v)` at the
 /// velocity v. Both are 0 for pins.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct LinearForce {
     /// x, y and z (m/s²).
     pub push: Vec3Lanes,
     /// Along the normal, the root of the damping rate (1/√s).
     pub drag: Vec3Lanes,
+}
+
+impl LinearForce {
+    pub const NONE: Self = Self {
+        push: [[0.0; LANES]; 3],
+        drag: [[0.0; LANES]; 3],
+    };
 }
 
 /// Values that are the same for all particles.

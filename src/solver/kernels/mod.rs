@@ -29,8 +29,10 @@ pub(crate) use air_areas::{Enclosed, Rows, Triangles, air_areas, between};
 use barrier::one_block_at_a_time;
 pub(crate) use chains::{
     Chains, Columns, Direction, GROUP, Residuals, RowChains, RowScratch, RowSprings, Scratch,
-    Solved, SpringBand, Step, bundle_backward, bundle_forward, largest, measure_given,
-    measure_left, note_places, solve_chains, solve_columns, solve_rows,
+    Solved, SpringBand, Step, bundle_backward, bundle_forward, largest, measure_elastic_left,
+    measure_elastic_left_at, measure_given, measure_left, measure_left_at, note_places,
+    solve_chains, solve_columns, solve_columns_again, solve_damped_chains, solve_damped_rows,
+    solve_rows, solve_rows_again,
 };
 #[cfg(test)]
 pub(crate) use commit::MIN_MOVE;
@@ -38,13 +40,16 @@ pub(crate) use commit::commit;
 pub(crate) use each::four;
 pub(crate) use elastic::{ElasticGrid, Force, Kick, kick, share};
 pub(crate) use forces::{AeroCoefficients, LinearForce, air_linearize, force_impulse, force_push};
-pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets, turned};
+pub(crate) use packet::{Packet, Row, SPRINGS, relax_packets_back, relax_packets_there, turned};
 pub(crate) use pentadiagonal::{
     Factor, Vec3Lanes, chain_backward, chain_columns, chain_finish, chain_forward, chain_links,
     chain_moments, chain_rows,
 };
 pub(crate) use plate::{EDGE, Moments, Stiffness, plate_moments, plate_places, plate_push};
-pub(crate) use predict::{ForceStep, Prediction, begin_past, predict, predict_first, weight};
+pub(crate) use predict::{
+    ForceStep, Prediction, begin_past, predict, predict_first, predict_first_forced,
+    predict_forced, weight,
+};
 pub(crate) use step_scale::{StepScale, Stiffer};
 pub(crate) use twist::{twist_backward, twist_forward, twist_links};
 
@@ -204,24 +209,34 @@ macro_rules! kernels {
 }
 
 kernels! {
-    predict_first(row: &mut [Block], prediction: &Prediction, forces: &ForceStep),
-    predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction, forces: &ForceStep),
+    predict_first(row: &mut [Block], prediction: &Prediction),
+    predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction),
+    predict_first_forced(row: &mut [Block], linearized: &[LinearForce], prediction: &Prediction, force_step: &ForceStep),
+    predict_forced(row: &mut [Block], past: &mut [Earlier], linearized: &[LinearForce], prediction: &Prediction, force_step: &ForceStep),
     begin_past(row: &[Block], past: &mut [Earlier]),
     air_areas(rows: &Rows, areas: &mut [Vec3Lanes]),
     air_linearize(blocks: &[Block], areas: &[Vec3Lanes], winds: &[Vec3Lanes], coefficients: &AeroCoefficients, linearized: &mut [LinearForce], places: &mut [Lanes]),
     force_impulse(blocks: &[Block], linearized: &[LinearForce], places: &[Lanes], seconds: f32, sum: &mut Vec3Lanes),
     force_push(row: &mut [Block], linearized: &[LinearForce], weight: f32, inverse_substep: f32),
     solve_chains(chains: &mut Chains, springs: &SpringBand),
-    solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2], is_again: bool),
+    solve_damped_chains(chains: &mut Chains, springs: &SpringBand),
+    solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2]),
+    solve_damped_rows(rows: &mut RowChains, springs: &[SpringBand; 2]),
+    solve_rows_again(rows: &mut RowChains, springs: &[SpringBand; 2]),
     solve_columns(columns: &mut Columns, springs: &SpringBand),
+    solve_columns_again(columns: &mut Columns, springs: &SpringBand),
     note_places(row: &[Block], left: &mut Residuals),
-    measure_left(row: &[Block], blocks: Option<&[u32]>, springs: &RowSprings, left: &mut Residuals),
+    measure_left(row: &[Block], springs: &RowSprings, left: &mut Residuals),
+    measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Residuals),
+    measure_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Residuals),
+    measure_elastic_left_at(row: &[Block], blocks: &[u32], springs: &RowSprings, left: &mut Residuals),
     measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut Lanes),
     bundle_forward(rows: &[Row], heads: &[u32; LANES], steps: &[Step], pulled: &[Lanes], solved: &mut [Solved], step_scale: &StepScale),
     bundle_backward(rows: &mut [Row], heads: &[u32; LANES], steps: &[Step], pulled: &mut [Lanes], solved: &[Solved]),
     commit(row: &mut [Block], farthest: &mut Lanes),
     kick(blocks: &mut [Block], first: usize, around: [&[Block]; 2], springs: &ElasticGrid, kick: &Kick, forces: &mut [Vec<Force>; 2], moved: &mut Lanes),
-    relax_packets(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale, is_back: bool),
+    relax_packets_there(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
+    relax_packets_back(rows: &mut [Row], packets: &[Packet], pulls: &mut [Vec4], step_scale: &StepScale),
     plate_places(row: &[Block], origin: &[f32; 3], part: f32, places: &mut [Vec3Lanes]),
     plate_moments(places: [&[Vec3Lanes]; 3], stiffness: &[Stiffness], moments: &mut [Moments]),
     plate_push(moments: [&[Moments]; 3], weight: f32, row: &mut [Block]),

@@ -48,25 +48,30 @@ pub(crate) struct Packet {
 /// `(q − r²) / (1.5 q + 0.5 r²)`, the first step of Halley's iteration for the root. At a stretch ε it is off by the part
 /// ε²/4 (6·10⁻⁴ at 5 %).
 ///
-/// On the way back the last packet is first, and a spring that gives has pulled already, which it does not do twice. `pulls` are
-/// what each spring has pulled with on both ways, as a part of its length.
+/// Of this the way back is to know what each spring has pulled with, as a part of its length.
 #[inline(always)]
-pub(crate) fn relax_packets(
+pub(crate) fn relax_packets_there(
     rows: &mut [Row],
     packets: &[Packet],
     pulls: &mut [Vec4],
     step_scale: &StepScale,
-    is_back: bool,
 ) {
-    let each = packets.iter().zip(pulls);
-    if is_back {
-        for (packet, pull) in each.rev() {
-            *pull += relax(rows, packet, step_scale, Some(*pull));
-        }
-    } else {
-        for (packet, pull) in each {
-            *pull = relax(rows, packet, step_scale, None);
-        }
+    for (packet, pull) in packets.iter().zip(pulls) {
+        *pull = relax(rows, packet, step_scale, None);
+    }
+}
+
+/// The way back: the last packet first. A spring that gives has pulled already, which it does not do twice. Adds what each pulls
+/// with on this way.
+#[inline(always)]
+pub(crate) fn relax_packets_back(
+    rows: &mut [Row],
+    packets: &[Packet],
+    pulls: &mut [Vec4],
+    step_scale: &StepScale,
+) {
+    for (packet, pull) in packets.iter().zip(pulls).rev() {
+        *pull += relax(rows, packet, step_scale, Some(*pull));
     }
 }
 

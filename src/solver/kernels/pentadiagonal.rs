@@ -81,8 +81,10 @@ fn forward(
 fn backward(
     solved: &Lanes,
     inverse: &Lanes,
-    [upper, uppermost]: [&Lanes; 2],
-    [first, second]: [&Lanes; 2],
+    upper: &Lanes,
+    first: &Lanes,
+    uppermost: &Lanes,
+    second: &Lanes,
 ) -> Lanes {
     let mut out = [0.0; LANES];
     for l in 0..LANES {
@@ -146,8 +148,15 @@ pub(crate) fn chain_backward(
         let view = block.view_mut();
         let (inverse, upper, uppermost) = (&own[j][2], &upper[j][0], &uppermost[j][1]);
         for axis in 0..3 {
-            let after = [&first[j][axis], &second[j][axis]];
-            let moved = backward(&out[j][axis], inverse, [upper, uppermost], after);
+            let own = out[j][axis];
+            let moved = backward(
+                &own,
+                inverse,
+                upper,
+                &first[j][axis],
+                uppermost,
+                &second[j][axis],
+            );
             out[j][axis] = moved;
             for l in 0..LANES {
                 view[MOVES[axis] + l] += moved[l];
@@ -226,8 +235,15 @@ pub(crate) fn chain_rows(columns: &mut [Vec3Lanes], stiffness: &Lanes, factors: 
     let mut after = [0.0; LANES];
     for (solved, [lower, lowest, inverse]) in columns.iter_mut().zip(factors).rev() {
         for axis in 0..3 {
-            let after = [&first[axis], &second[axis]];
-            solved[axis] = backward(&solved[axis], inverse, [&upper, &uppermost], after);
+            let own = solved[axis];
+            solved[axis] = backward(
+                &own,
+                inverse,
+                &upper,
+                &first[axis],
+                &uppermost,
+                &second[axis],
+            );
         }
         (second, first) = (first, *solved);
         (upper, uppermost, after) = (*lower, after, *lowest);

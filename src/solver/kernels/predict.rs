@@ -17,9 +17,8 @@ use bevy::math::Vec3;
 use super::{
     barrier::one_block_at_a_time,
     forces::{LinearForce, acceleration},
-    pentadiagonal::Vec3Lanes,
 };
-use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, View, W};
+use crate::cloth::{Block, DX, DY, DZ, Earlier, LANES, StepKind, W};
 
 /// The next displacement: `own d₀ + one (d₀ − d₁) + two (d₁ − d₂) + pull`.
 #[derive(Debug, Clone, Copy)]
@@ -80,62 +79,19 @@ pub(crate) fn weight(kind: StepKind) -> f32 {
     }
 }
 
-/// Forces in a sub-step, if there are some: with their weight (s²), and one over its length (1/s).
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ForceStep<'a> {
-    pub linearized: &'a [LinearForce],
-    pub weight: f32,
-    pub inverse_substep: f32,
-}
-
-/// The pulls of a prediction and of forces on the particles of a block (m).
-#[inline(always)]
-fn pulls<const FORCED: bool>(
-    (index, view): (usize, &View),
-    prediction: &Prediction,
-    forces: &ForceStep,
-) -> Vec3Lanes {
-    let mut pulls = [[0.0; LANES]; 3];
-    for l in 0..LANES {
-        let mut given = [0.0; 3];
-        if FORCED {
-            let now = [view[DX + l], view[DY + l], view[DZ + l]];
-            given = acceleration(&forces.linearized[index], now, forces.inverse_substep, l);
-        }
-        for axis in 0..3 {
-            let pull = prediction.pull[axis];
-            let forced = pull + forces.weight * given[axis];
-            pulls[axis][l] = if FORCED { forced } else { pull };
-        }
-    }
-    pulls
-}
-
 /// Without a past. Pinned particles keep the displacement that they were given.
 #[inline(always)]
-pub(crate) fn predict_first(row: &mut [Block], prediction: &Prediction, forces: &ForceStep) {
-    if forces.linearized.is_empty() {
-        without_past::<false>(row, prediction, forces);
-    } else {
-        without_past::<true>(row, prediction, forces);
-    }
-}
-
-#[inline(always)]
-fn without_past<const FORCED: bool>(
-    row: &mut [Block],
-    prediction: &Prediction,
-    forces: &ForceStep,
-) {
-    for (index, block) in row.iter_mut().enumerate() {
+pub(crate) fn predict_first(row: &mut [Block], prediction: &Prediction) {
+    for block in row {
         let view = block.view_mut();
-        let pulls = pulls::<FORCED>((index, view), prediction, forces);
-        for (axis, pulls) in pulls.iter().enumerate() {
-            let at = DX + axis * LANES;
+        for (at, pull) in [DX, DY, DZ].into_iter().zip(prediction.pull) {
             for l in 0..LANES {
-                let now = view[at + l];
-                let moved = now * prediction.own + pulls[l];
-                view[at + l] = if view[W + l] > 0.0 { moved } else { now };
+                let moved = view[at + l] * prediction.own + pull;
+                view[at + l] = if view[W + l] > 0.0 {
+                    moved
+                } else {
+                    view[at + l]
+                };
             }
         }
         one_block_at_a_time();
@@ -144,30 +100,16 @@ fn without_past<const FORCED: bool>(
 
 /// With a past, which moves on by a sub-step.
 #[inline(always)]
-pub(crate) fn predict(
-    row: &mut [Block],
-    past: &mut [Earlier],
-    prediction: &Prediction,
-    forces: &ForceStep,
-) {
-    if forces.linearized.is_empty() {
-        with_past::<false>(row, past, prediction, forces);
-    } else {
-        with_past::<true>(row, past, prediction, forces);
-    }
-}
-
-#[inline(always)]
-fn with_past<const FORCED: bool>(
-    row: &mut [Block],
-    past: &mut [Earlier],
-    prediction: &Prediction,
-    forces: &ForceStep,
-) {
-    let Prediction { own, one, two, .. } = *prediction;
-    for (index, (block, Earlier(earlier))) in row.iter_mut().zip(past).enumerate() {
+pub(crate) fn predict(row: &mut [Block], past: &mut [Earlier], prediction: &Prediction) {
+    let Prediction {
+        own,
+        one,
+        two,
+        pull,
+        ..
+    } = *prediction;
+    for (block, Earlier(earlier)) in row.iter_mut().zip(past) {
         let view = block.view_mut();
-        let pulls = pulls::<FORCED>((index, view), prediction, forces);
         // Found once a block, as bits: compilers make much of a choice by numbers that lie elsewhere in the block.
         let mut free = [0; LANES];
         for l in 0..LANES {
@@ -177,8 +119,83 @@ fn with_past<const FORCED: bool>(
             let at = DX + axis * LANES;
             for l in 0..LANES {
                 let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
+                let moved = own * now + one * (now - before) + two * (before - first) + pull[axis];
+                let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
+                view[at + l] = f32::from_bits(chosen);
+                earlier[axis + 3][l] = before;
+                earlier[axis][l] = now;
+            }
+        }
+        one_block_at_a_time();
+    }
+}
+
+/// Parameters of forces in a sub-step: its weight (s²), and one over its length (1/s).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ForceStep {
+    pub weight: f32,
+    pub inverse_substep: f32,
+}
+
+/// Without a past, under forces.
+#[inline(always)]
+pub(crate) fn predict_first_forced(
+    row: &mut [Block],
+    linearized: &[LinearForce],
+    prediction: &Prediction,
+    force_step: &ForceStep,
+) {
+    for (block, linearized) in row.iter_mut().zip(linearized) {
+        let view = block.view_mut();
+        for l in 0..LANES {
+            let now = [view[DX + l], view[DY + l], view[DZ + l]];
+            let given = acceleration(linearized, now, force_step.inverse_substep, l);
+            for axis in 0..3 {
+                let at = DX + axis * LANES + l;
+                let pull = prediction.pull[axis] + force_step.weight * given[axis];
+                let moved = now[axis] * prediction.own + pull;
+                view[at] = if view[W + l] > 0.0 { moved } else { now[axis] };
+            }
+        }
+        one_block_at_a_time();
+    }
+}
+
+/// With a past, which moves on by a sub-step, under forces.
+#[inline(always)]
+pub(crate) fn predict_forced(
+    row: &mut [Block],
+    past: &mut [Earlier],
+    linearized: &[LinearForce],
+    prediction: &Prediction,
+    force_step: &ForceStep,
+) {
+    let Prediction {
+        own,
+        one,
+        two,
+        pull,
+        ..
+    } = *prediction;
+    let ForceStep {
+        weight,
+        inverse_substep,
+    } = *force_step;
+    for ((block, Earlier(earlier)), linearized) in row.iter_mut().zip(past).zip(linearized) {
+        let view = block.view_mut();
+        let (mut free, mut given) = ([0; LANES], [[0.0; LANES]; 3]);
+        for l in 0..LANES {
+            free[l] = if view[W + l] > 0.0 { u32::MAX } else { 0 };
+            let now = [view[DX + l], view[DY + l], view[DZ + l]];
+            let [x, y, z] = acceleration(linearized, now, inverse_substep, l);
+            (given[0][l], given[1][l], given[2][l]) = (x, y, z);
+        }
+        for axis in 0..3 {
+            let at = DX + axis * LANES;
+            for l in 0..LANES {
+                let (now, before, first) = (view[at + l], earlier[axis][l], earlier[axis + 3][l]);
                 let moved = own * now + one * (now - before) + two * (before - first);
-                let moved = moved + pulls[axis][l];
+                let moved = moved + (pull[axis] + weight * given[axis][l]);
                 let chosen = (moved.to_bits() & free[l]) | (now.to_bits() & !free[l]);
                 view[at + l] = f32::from_bits(chosen);
                 earlier[axis + 3][l] = before;

@@ -28,8 +28,9 @@ pub(crate) fn twist_links(row: &[Block], is_odd: bool, links: &mut [Vec3Lanes]) 
 fn forward(
     [own, next]: [&Lanes; 2],
     stiffness: &Lanes,
+    above: &Lanes,
     lower: &Lanes,
-    [above, before]: [&Lanes; 2],
+    before: &Lanes,
 ) -> [Lanes; 2] {
     let (mut moment, mut out) = ([0.0; LANES], [0.0; LANES]);
     for l in 0..LANES {
@@ -57,8 +58,13 @@ pub(crate) fn twist_forward(
         let lower = &factors[j][0];
         for axis in 0..3 {
             let links = [&own[j][axis], &next[j][axis]];
-            let above = [&moments[j][axis], &before[j][axis]];
-            [moments[j][axis], out[j][axis]] = forward(links, &stiffness[j], lower, above);
+            [moments[j][axis], out[j][axis]] = forward(
+                links,
+                &stiffness[j],
+                &moments[j][axis],
+                lower,
+                &before[j][axis],
+            );
         }
     }
 }

@@ -42,9 +42,7 @@ use super::{
     partitions::{MAX_PARTITIONS, in_partitions, take},
     step::{DAMPING_REFERENCE, SubStep, TickStep},
 };
-use crate::cloth::{
-    Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z, larger,
-};
+use crate::cloth::{Block, ClothGrid, Compliances, LANES, Lanes, Layout, SpringList, W, X, Y, Z};
 use list::ForceList;
 
 /// Of the largest stable sub-step. The rest is for bending, which pushes with them.
@@ -141,9 +139,15 @@ impl SoftSprings {
             for (block, sum) in blocks.iter().zip(self.sums_of(row)) {
                 let view = block.view();
                 for l in 0..LANES {
-                    largest[l] = larger(view[W + l] * sum[l], largest[l]);
+                    let own = view[W + l] * sum[l];
+                    largest[l] = if own > largest[l] { own } else { largest[l] };
                     for at in [X, Y, Z] {
-                        farthest[l] = larger(view[at + l].abs(), farthest[l]);
+                        let away = view[at + l].abs();
+                        farthest[l] = if away > farthest[l] {
+                            away
+                        } else {
+                            farthest[l]
+                        };
                     }
                 }
             }
@@ -169,7 +173,7 @@ impl SoftSprings {
         SubStep { index, count, .. }: SubStep,
         damping_reference: &mut DampingReference,
         bending: Option<(&mut Bending, f32)>,
-        linearized: &[LinearForce],
+        linearized: Option<&[LinearForce]>,
         free_pieces: &mut FreePieces,
         kernels: &Kernels,
     ) -> f32 {
@@ -199,7 +203,9 @@ impl SoftSprings {
         {
             bending.push(blocks, bends_for * dt * dt / kept, kernels);
         }
-        (kernels.force_push)(blocks, linearized, weight / kept, 1.0 / dt);
+        if let Some(linearized) = linearized {
+            (kernels.force_push)(blocks, linearized, weight / kept, 1.0 / dt);
+        }
         let moved = self.kick(blocks, &kick, kernels);
         moved.into_iter().fold(0.0, f32::max).sqrt()
     }
@@ -222,8 +228,27 @@ impl SoftSprings {
     /// Has forces act, and moves the particles. Returns their squared displacements (m²), the largest of each lane.
     fn kick(&mut self, blocks: &mut [Block], kick: &Kick, kernels: &Kernels) -> Lanes {
         let mut moved = [[0.0; LANES]; MAX_PARTITIONS];
-        let (springs, partitions) = (&self.springs, self.partitions);
-        let (scratch, borders) = (&mut self.scratch, &mut self.borders);
+        let Self {
+            springs,
+            scratch,
+            borders,
+            partitions,
+            ..
+        } = self;
+        let partitions = *partitions;
+        if partitions == 1 {
+            let around: [&[Block]; 2] = [&[], &[]];
+            (kernels.kick)(
+                blocks,
+                0,
+                around,
+                springs,
+                kick,
+                &mut scratch[0],
+                &mut moved[0],
+            );
+            return moved[0];
+        }
         let (rows, strip) = (springs.layout.rows as usize, springs.layout.strip as usize);
         if scratch.len() < partitions {
             scratch.resize(partitions, scratch[0].clone());
@@ -243,8 +268,10 @@ impl SoftSprings {
             .take(partitions)
             .enumerate();
         let parts = each.map(|(partition, (scratch, moved))| {
-            let rows = first_row(partition + 1) - first_row(partition);
-            let own = take(&mut rest, rows * strip);
+            let own = take(
+                &mut rest,
+                (first_row(partition + 1) - first_row(partition)) * strip,
+            );
             // Of each border, the row above it and the row below it.
             let row = |at: usize| borders.get(at * strip..(at + 1) * strip).unwrap_or(&[]);
             let above: &[Block] = partition
@@ -256,7 +283,6 @@ impl SoftSprings {
         in_partitions(parts, |(own, first, around, scratch, moved)| {
             (kernels.kick)(own, first, around, springs, kick, scratch, moved);
         });
-        let moved = &moved[..partitions];
         array::from_fn(|l| moved.iter().fold(0.0, |most, own| own[l].max(most)))
     }
 }

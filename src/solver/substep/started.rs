@@ -2,7 +2,7 @@
 
 use super::{AFTER_CONTACT, RESOLVED, Solver, UNSOLVED, WARY_TICKS};
 use crate::{
-    cloth::{Block, ClothParticles, StepKind},
+    cloth::{Block, ClothParticles, Earlier, StepKind},
     solver::{
         bending::BendingSchedule,
         damping_reference::DampingReference,
@@ -240,23 +240,35 @@ impl Solver {
         // The displacement of a first sub-step is half a sub-step behind the velocity at its end.
         tick.damping_reference
             .gain(if kind == StepKind::Start { 0.5 } else { 1.0 });
-        let linearized = self.forces.linearized();
-        let forces = |first: usize, blocks: &[Block]| ForceStep {
-            linearized: (linearized.get(first..first + blocks.len())).unwrap_or_default(),
+        let force_step = ForceStep {
             weight,
             inverse_substep: 1.0 / dt,
         };
+        let linearized = self.forces.linearized();
         let (blocks, past) = particles.blocks_and_past();
-        if step.order == TimeOrder::First {
-            let forces = forces(0, blocks);
-            (kernels.predict_first)(blocks, &prediction, &forces);
-        } else {
-            let size = blocks.len().div_ceil(partitions).max(1);
-            let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
-            in_partitions(parts.enumerate(), |(partition, (blocks, past))| {
-                let forces = forces(partition * size, blocks);
-                (kernels.predict)(blocks, past, &prediction, &forces);
-            });
+        match (step.order, linearized) {
+            (TimeOrder::First, None) => (kernels.predict_first)(blocks, &prediction),
+            (TimeOrder::First, Some(linearized)) => {
+                (kernels.predict_first_forced)(blocks, linearized, &prediction, &force_step);
+            }
+            (TimeOrder::Second, linearized) => {
+                let predict = |first: usize, blocks: &mut [Block], past: &mut [Earlier]| {
+                    let Some(linearized) = linearized else {
+                        return (kernels.predict)(blocks, past, &prediction);
+                    };
+                    let linearized = &linearized[first..first + blocks.len()];
+                    (kernels.predict_forced)(blocks, past, linearized, &prediction, &force_step);
+                };
+                if partitions > 1 {
+                    let size = blocks.len().div_ceil(partitions);
+                    let parts = blocks.chunks_mut(size).zip(past.chunks_mut(size));
+                    in_partitions(parts.enumerate(), |(partition, (blocks, past))| {
+                        predict(partition * size, blocks, past);
+                    });
+                } else {
+                    predict(0, blocks, past);
+                }
+            }
         }
         let gain = step.acceleration * dt * dt;
         (self.free_pieces).shift(particles.blocks_mut(), |displacement| {
@@ -313,7 +325,14 @@ impl Solver {
         pins: &[PinMotion],
         tick: StartedTick,
     ) -> Stretch {
-        let step = tick.step;
+        let StartedTick {
+            step,
+            is_pushed,
+            measured,
+            material,
+            ripple,
+            ..
+        } = tick;
         if step.seconds <= 0.0 {
             return self.measure(particles);
         }
@@ -328,9 +347,9 @@ impl Solver {
             };
         }
         let stretch = Stretch {
-            ripple_substeps: step.seconds * tick.ripple / RESOLVED,
-            material: tick.material,
-            ..tick.measured.unwrap_or_else(|| self.measure(particles))
+            ripple_substeps: step.seconds * ripple / RESOLVED,
+            material,
+            ..measured.unwrap_or_else(|| self.measure(particles))
         };
         let is_still = pins.iter().all(|pin| pin.from == pin.to);
         // The stretch of the material comes back by itself, and pushes and carriers give a cloth energy.
@@ -339,7 +358,7 @@ impl Solver {
         if let Some(before) = tick.watched
             && is_unsolved
             && is_still
-            && !tick.is_pushed
+            && !is_pushed
         {
             before.limit(particles, step.acceleration);
         } else {
@@ -347,7 +366,7 @@ impl Solver {
         }
         particles.past_mut().set_moved();
         if let Some(spin) = tick.spin
-            && !tick.is_pushed
+            && !is_pushed
         {
             let kept = (1.0 - step.damping).powf(step.seconds / DAMPING_REFERENCE);
             spin.restore(particles, kept, &self.free_pieces);

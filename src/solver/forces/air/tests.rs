@@ -259,7 +259,7 @@ fn the_air_of_any_place_and_speed_is_finite() {
                 both.clone().all(|value| value.is_finite())
             };
             let impulse = forces.impulse();
-            let linearized = forces.linearized();
+            let linearized = forces.linearized().expect("air");
             assert!(
                 linearized.iter().all(is_finite) && impulse.is_finite(),
                 "10^{far} m, 10^{fast} m a sub-step, {inverse_mass} per kg: {impulse}"

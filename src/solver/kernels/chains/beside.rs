@@ -130,7 +130,7 @@ impl Scratch {
     pub fn new(layout: Layout) -> Self {
         let strip = layout.strip as usize;
         Self {
-            links: vec![Link::default(); layout.blocks().saturating_sub(strip)],
+            links: vec![Link::NONE; layout.blocks().saturating_sub(strip)],
             before: vec![Before::NONE; strip],
             behind: vec![Behind::NONE; strip],
         }

@@ -7,7 +7,7 @@
 
 use bevy::math::Vec4;
 
-use super::link::{HOLD, clamped, opening, terms};
+use super::link::{HOLD, clamped, opening, terms_at};
 use crate::{
     cloth::{LANES, Lanes, Spring},
     solver::kernels::{
@@ -185,7 +185,7 @@ fn forward<const DAMPED_OR_STIFFER: bool>(
                 }
             }
             let (hold, rest) = (step.hold[l], step.rest[l]);
-            let [diagonal, right] = terms([x, y, z], both, softness, hold, rest, squares);
+            let [diagonal, right] = terms_at([x, y, z], both, softness, hold, rest, squares);
             let right = if DAMPED_OR_STIFFER {
                 // The same as a grid's springs do.
                 let moved =

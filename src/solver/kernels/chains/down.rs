@@ -13,12 +13,15 @@
 
 use super::{
     beside::Chains,
-    link::{Before, Behind, Link, NOT_PULLED, SpringBand, equation},
+    link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
     solver::kernels::each::three,
 };
+
+/// Multipliers of springs that have not pulled.
+const NONE: Lanes = [0.0; LANES];
 
 /// Eliminates the springs before. With `CROSSES`, the result is moved by a lane to the right.
 #[inline(always)]
@@ -29,10 +32,24 @@ fn eliminate<const CROSSES: bool, const DAMPED: bool, const AGAIN: bool>(
     before: &mut Before,
     link: &mut Link,
 ) {
-    let own = [&springs.softness[at], &springs.hold[at], pulled];
+    let (softness, hold) = (&springs.softness[at], &springs.hold[at]);
     let mut lane_before = [0.0; 6];
     for l in 0..LANES {
-        let ([x, y, z], [diagonal, right]) = equation::<DAMPED, AGAIN>([a, b], springs, own, l);
+        let [x, y, z] = span(a, b, springs.inverse_rest, l);
+        let weight = a[W + l] + b[W + l];
+        let softness = if DAMPED {
+            springs.kept * softness[l]
+        } else {
+            softness[l]
+        };
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest);
+        let right = if DAMPED {
+            damped(right, [a, b], [x, y, z], springs, l)
+        } else if AGAIN {
+            after(right, [x, y, z], softness, pulled[l])
+        } else {
+            right
+        };
         let along = before.span[0][l] * x + before.span[1][l] * y + before.span[2][l] * z;
         let off = -a[W + l] * along;
         let share = off * before.pivot[l];
@@ -82,11 +99,20 @@ fn pull_head(a: &mut View, pull: &[Lanes; 3]) {
 /// Solves chains that lead from row to row.
 #[inline(always)]
 pub(crate) fn solve_chains(chains: &mut Chains, springs: &SpringBand) {
-    match (chains.is_oblique(), springs.kept < 1.0) {
-        (true, false) => solve::<true, false>(chains, springs),
-        (false, false) => solve::<false, false>(chains, springs),
-        (true, true) => solve::<true, true>(chains, springs),
-        (false, true) => solve::<false, true>(chains, springs),
+    if chains.is_oblique() {
+        solve::<true, false>(chains, springs);
+    } else {
+        solve::<false, false>(chains, springs);
+    }
+}
+
+/// The same with damping along them.
+#[inline(always)]
+pub(crate) fn solve_damped_chains(chains: &mut Chains, springs: &SpringBand) {
+    if chains.is_oblique() {
+        solve::<true, true>(chains, springs);
+    } else {
+        solve::<false, true>(chains, springs);
     }
 }
 
@@ -111,10 +137,10 @@ fn solve<const OBLIQUE: bool, const DAMPED: bool>(chains: &mut Chains, springs: 
             let own = (springs, first + block);
             if OBLIQUE && block == last {
                 let b = b.shifted();
-                eliminate::<true, DAMPED, false>([a, b], own, &NOT_PULLED, before, link);
+                eliminate::<true, DAMPED, false>([a, b], own, &NONE, before, link);
             } else {
                 let b = b.view();
-                eliminate::<false, DAMPED, false>([a, b], own, &NOT_PULLED, before, link);
+                eliminate::<false, DAMPED, false>([a, b], own, &NONE, before, link);
             }
             block = if block == last { 0 } else { block + 1 };
         }
@@ -155,14 +181,16 @@ pub(crate) struct Columns<'a> {
     pub pulled: &'a mut [Lanes],
 }
 
-/// Solves the chosen columns. Elastic springs go on from what they have pulled with.
+/// Solves the chosen columns, of rigid springs.
 #[inline(always)]
 pub(crate) fn solve_columns(columns: &mut Columns, springs: &SpringBand) {
-    if columns.pulled.is_empty() {
-        solve_chosen::<false>(columns, springs);
-    } else {
-        solve_chosen::<true>(columns, springs);
-    }
+    solve_chosen::<false>(columns, springs);
+}
+
+/// The same of elastic springs, which go on from what they have pulled with.
+#[inline(always)]
+pub(crate) fn solve_columns_again(columns: &mut Columns, springs: &SpringBand) {
+    solve_chosen::<true>(columns, springs);
 }
 
 #[inline(always)]
@@ -185,8 +213,11 @@ fn solve_chosen<const AGAIN: bool>(columns: &mut Columns, springs: &SpringBand) 
         for (&block, (link, before)) in chosen.iter().zip(links.iter_mut().zip(&mut *before)) {
             let block = block as usize;
             let ends = [upper[block].view(), lower[block].view()];
-            let at = (row + 1) * strip + block;
-            let pulled = if AGAIN { &pulled[at] } else { &NOT_PULLED };
+            let pulled = if AGAIN {
+                &pulled[(row + 1) * strip + block]
+            } else {
+                &NONE
+            };
             let own = (springs, springs.first_of(row) + block);
             eliminate::<false, false, AGAIN>(ends, own, pulled, before, link);
         }

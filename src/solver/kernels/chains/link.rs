@@ -1,7 +1,7 @@
 //! One spring of a chain, in the system of equations of all springs of that chain.
 
 use crate::{
-    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, MapInline, View, W, X, larger},
+    cloth::{ClothGrid, Compliances, DX, LANES, Lanes, Layout, MapInline, View, W, X},
     solver::kernels::{each::three, step_scale::StepScale},
 };
 
@@ -15,11 +15,8 @@ const REGULARISATION: f32 = 1.0e-3;
 /// beside its line by y would be thrown beyond it, by C/ε × y.
 const STRAINED: f32 = 0.2;
 
-/// Multipliers of springs that have not pulled.
-pub(crate) const NOT_PULLED: Lanes = [0.0; LANES];
-
 /// Eight springs, each of a chain of its own, between the forward and the backward pass.
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(crate) struct Link {
     /// From its first to its second particle, in rest lengths.
@@ -28,6 +25,15 @@ pub(crate) struct Link {
     pub share: Lanes,
     /// Right side, eliminated; after the backward pass the multiplier (m kg).
     pub right: Lanes,
+}
+
+impl Link {
+    /// No spring.
+    pub const NONE: Self = Self {
+        span: [[0.0; LANES]; 3],
+        share: [0.0; LANES],
+        right: [0.0; LANES],
+    };
 }
 
 /// The data that a spring needs of the one before it in its chain.
@@ -162,8 +168,11 @@ impl SpringBand {
         for (softness, compliance) in self.softness.iter_mut().zip(&self.compliance) {
             *softness = compliance.map_inline(|compliance| compliance * step_scale.inverse_weight);
         }
-        let is_elastic = self.is_elastic();
-        self.kept = if is_elastic { step_scale.kept } else { 1.0 };
+        self.kept = if self.is_elastic() {
+            step_scale.kept
+        } else {
+            1.0
+        };
     }
 
     /// Whether a spring of it gives.
@@ -181,10 +190,21 @@ pub(crate) fn clamped(span: f32) -> f32 {
     if span < -FARTHEST { -FARTHEST } else { span }
 }
 
-/// Diagonal (1/kg) and right side (m) of a spring with this span, between particles of these inverse masses together (1/kg). It
-/// is without a force at a length of which this is the square, and one over it, in squared lengths at rest.
+/// Diagonal (1/kg) and right side (m) of a spring with this span, between particles of these inverse masses together (1/kg).
 #[inline(always)]
 pub(crate) fn terms(
+    [x, y, z]: [f32; 3],
+    weight: f32,
+    softness: f32,
+    hold: f32,
+    rest: f32,
+) -> [f32; 2] {
+    terms_at([x, y, z], weight, softness, hold, rest, [1.0; 2])
+}
+
+/// The same of a spring without a force at another length: its square, and one over it, in squared lengths at rest.
+#[inline(always)]
+pub(crate) fn terms_at(
     [x, y, z]: [f32; 3],
     weight: f32,
     softness: f32,
@@ -220,21 +240,30 @@ pub(crate) fn opening(end: [f32; 3], moved: [f32; 3], rest: f32) -> f32 {
 /// makes `C + (τ/Δt)(C − C₀)` of C in its equation, which is divided by 1 + τ/Δt = 1/κ: `κ C + (1 − κ)(C − C₀)`, with a softness
 /// of κ α/(c Δt²).
 #[inline(always)]
-fn damped(right: f32, [a, b]: [&View; 2], span: [f32; 3], springs: &SpringBand, l: usize) -> f32 {
+pub(crate) fn damped(
+    right: f32,
+    [a, b]: [&View; 2],
+    span: [f32; 3],
+    springs: &SpringBand,
+    l: usize,
+) -> f32 {
     let moved = three(|axis| {
         let at = DX + axis * LANES + l;
         (b[at] - a[at]) * springs.inverse_rest
     });
     let opening = opening(span, moved, springs.rest);
     let kept = springs.kept;
-    let is_free = a[W + l] + b[W + l] > 0.0;
-    let opening = if is_free { opening } else { 0.0 };
+    let opening = if a[W + l] + b[W + l] > 0.0 {
+        opening
+    } else {
+        0.0
+    };
     kept * right - (1.0 - kept) * opening
 }
 
 /// The span of one lane's spring from the first to the second particle, in rest lengths.
 #[inline(always)]
-fn span(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
+pub(crate) fn span(a: &View, b: &View, inverse_rest: f32, l: usize) -> [f32; 3] {
     three(|axis| {
         let (at, moved) = (X + axis * LANES, DX + axis * LANES);
         clamped(((b[at + l] - a[at + l]) + (b[moved + l] - a[moved + l])) * inverse_rest)
@@ -248,32 +277,19 @@ pub(crate) fn measure_given(pulled: &[Lanes], softness: &[Lanes], largest: &mut 
     for (pulled, softness) in pulled.iter().zip(softness) {
         for l in 0..LANES {
             let given = (pulled[l] * softness[l]).abs();
-            largest[l] = larger(given, largest[l]);
+            largest[l] = if given > largest[l] {
+                given
+            } else {
+                largest[l]
+            };
         }
     }
 }
 
-/// The span of one lane's spring, and the diagonal and right side of its equation. `AGAIN`, it has pulled already.
+/// The right side that a spring which has pulled already has left, of that without a pull.
 #[inline(always)]
-pub(crate) fn equation<const DAMPED: bool, const AGAIN: bool>(
-    [a, b]: [&View; 2],
-    springs: &SpringBand,
-    [softness, hold, pulled]: [&Lanes; 3],
-    l: usize,
-) -> ([f32; 3], [f32; 2]) {
-    let [x, y, z] = span(a, b, springs.inverse_rest, l);
-    let weight = a[W + l] + b[W + l];
-    let kept = if DAMPED { springs.kept } else { 1.0 };
-    let softness = kept * softness[l];
-    let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest, [1.0; 2]);
-    let right = if DAMPED {
-        damped(right, [a, b], [x, y, z], springs, l)
-    } else if AGAIN {
-        right - softness * (x * x + y * y + z * z) * pulled[l]
-    } else {
-        right
-    };
-    ([x, y, z], [diagonal, right])
+pub(crate) fn after(right: f32, [x, y, z]: [f32; 3], softness: f32, pulled: f32) -> f32 {
+    right - softness * (x * x + y * y + z * z) * pulled
 }
 
 #[cfg(test)]

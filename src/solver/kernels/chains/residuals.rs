@@ -86,21 +86,16 @@ fn raise<const ELASTIC: bool>(
     *left = most;
 }
 
-/// Measures the springs of a row, and those that lead to it from the row that was noted or measured before: all, or at some blocks.
+/// Measures the springs of a row, and those that lead to it from the row that was noted or measured before.
 #[inline(always)]
-pub(crate) fn measure_left(
-    row: &[Block],
-    blocks: Option<&[u32]>,
-    springs: &RowSprings,
-    left: &mut Residuals,
-) {
-    let is_elastic = !springs.pulled[0].is_empty();
-    match (blocks, is_elastic) {
-        (None, false) => measure::<false>(row, springs, left),
-        (None, true) => measure::<true>(row, springs, left),
-        (Some(blocks), false) => measure_at::<false>(row, blocks, springs, left),
-        (Some(blocks), true) => measure_at::<true>(row, blocks, springs, left),
-    }
+pub(crate) fn measure_left(row: &[Block], springs: &RowSprings, left: &mut Residuals) {
+    measure::<false>(row, springs, left);
+}
+
+/// The same where springs are elastic.
+#[inline(always)]
+pub(crate) fn measure_elastic_left(row: &[Block], springs: &RowSprings, left: &mut Residuals) {
+    measure::<true>(row, springs, left);
 }
 
 #[inline(always)]
@@ -127,6 +122,28 @@ fn measure<const ELASTIC: bool>(row: &[Block], springs: &RowSprings, left: &mut 
     let across = (across, first_across, count - 1);
     raise::<ELASTIC>([&before, &after], across, in_row, &mut most);
     left.across = largest(most);
+}
+
+/// Measures, in a row and from the one above, the springs at some blocks alone.
+#[inline(always)]
+pub(crate) fn measure_left_at(
+    row: &[Block],
+    blocks: &[u32],
+    springs: &RowSprings,
+    left: &mut Residuals,
+) {
+    measure_at::<false>(row, blocks, springs, left);
+}
+
+/// The same where springs are elastic.
+#[inline(always)]
+pub(crate) fn measure_elastic_left_at(
+    row: &[Block],
+    blocks: &[u32],
+    springs: &RowSprings,
+    left: &mut Residuals,
+) {
+    measure_at::<true>(row, blocks, springs, left);
 }
 
 #[inline(always)]

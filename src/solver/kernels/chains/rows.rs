@@ -12,7 +12,7 @@
 
 use super::{
     ends::{BESIDE, Ends, GROUP, Reduced, Wide},
-    link::{Before, Behind, Link, NOT_PULLED, SpringBand, equation},
+    link::{Before, Behind, Link, SpringBand, after, damped, span, terms},
 };
 use crate::{
     cloth::{Block, DX, DY, DZ, LANES, Lanes, View, W},
@@ -35,7 +35,7 @@ pub(crate) struct RowScratch {
 impl RowScratch {
     pub fn new(strip: usize) -> Self {
         Self {
-            links: vec![Link::default(); strip * GROUP],
+            links: vec![Link::NONE; strip * GROUP],
             spikes: vec![[0.0; LANES]; strip * GROUP],
             strip: Strip::NONE,
             ends: Ends::NONE,
@@ -77,19 +77,37 @@ fn eliminate<const FIRST: bool, const LAST: bool, const DAMPED: bool, const AGAI
     spike: &mut Lanes,
 ) {
     let at = first + block;
-    let pulled = if AGAIN { &pulled[block] } else { &NOT_PULLED };
-    let own = [&springs.softness[at], &springs.hold[at], pulled];
+    let (softness, hold) = (&springs.softness[at], &springs.hold[at]);
     for l in 0..LANES {
-        let ([x, y, z], [diagonal, right]) = equation::<DAMPED, AGAIN>([a, b], springs, own, l);
+        let [x, y, z] = span(a, b, springs.inverse_rest, l);
+        let weight = a[W + l] + b[W + l];
+        let softness = if DAMPED {
+            springs.kept * softness[l]
+        } else {
+            softness[l]
+        };
+        let [diagonal, right] = terms([x, y, z], weight, softness, hold[l], springs.rest);
+        let right = if DAMPED {
+            damped(right, [a, b], [x, y, z], springs, l)
+        } else if AGAIN {
+            after(right, [x, y, z], softness, pulled[block][l])
+        } else {
+            right
+        };
         let before = &mut strip.before;
         let along = before.span[0][l] * x + before.span[1][l] * y + before.span[2][l] * z;
         let off = -a[W + l] * along;
         let share = if FIRST { 0.0 } else { off * before.pivot[l] };
         let to_strip = if FIRST { 1.0 } else { -share * strip.off[l] };
-        let [diagonal, right] = if FIRST {
-            [diagonal, right]
+        let diagonal = if FIRST {
+            diagonal
         } else {
-            [diagonal - off * share, right - off * before.right[l]]
+            diagonal - off * share
+        };
+        let right = if FIRST {
+            right
+        } else {
+            right - off * before.right[l]
         };
         let pivot = if LAST { diagonal } else { 1.0 / diagonal };
         let right = if LAST { right } else { right * pivot };
@@ -230,17 +248,22 @@ pub(crate) struct RowChains<'a> {
     pub pulled: &'a mut [Lanes],
 }
 
-/// Solves the chains within rows, with the springs of a row on the grid's border, and of one that is not. Again, elastic springs
-/// go on from what they have pulled with, without damping.
+/// Solves the chains within rows, with the springs of a row on the grid's border, and of one that is not.
 #[inline(always)]
-pub(crate) fn solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2], is_again: bool) {
-    if is_again && !rows.pulled.is_empty() {
-        solve::<false, true>(rows, springs);
-    } else if !is_again && springs[0].kept < 1.0 {
-        solve::<true, false>(rows, springs);
-    } else {
-        solve::<false, false>(rows, springs);
-    }
+pub(crate) fn solve_rows(rows: &mut RowChains, springs: &[SpringBand; 2]) {
+    solve::<false, false>(rows, springs);
+}
+
+/// The same with damping along them.
+#[inline(always)]
+pub(crate) fn solve_damped_rows(rows: &mut RowChains, springs: &[SpringBand; 2]) {
+    solve::<true, false>(rows, springs);
+}
+
+/// The same of elastic springs, which go on from what they have pulled with.
+#[inline(always)]
+pub(crate) fn solve_rows_again(rows: &mut RowChains, springs: &[SpringBand; 2]) {
+    solve::<false, true>(rows, springs);
 }
 
 #[inline(always)]
