@@ -74,9 +74,9 @@ fn box_squares<const N: usize>(features: &[Points; N], bounds: &Bounds) -> Eight
 #[inline(always)]
 fn squares<const N: usize, const M: usize>(feature: &[Vec3; N], others: &[Points; M]) -> Eight {
     let mut squares = [0.0; 8];
-    for l in 0..8 {
+    for (l, square) in squares.iter_mut().enumerate() {
         let of = |point: usize| point_of(&others[point], l);
-        squares[l] = if N == 1 {
+        *square = if N == 1 {
             vertex_to_face(feature[0], [of(0), of(1), of(2)])
         } else {
             edge_to_edge([feature[0], feature[1]], [of(0), of(1)])
@@ -130,8 +130,8 @@ fn near<const N: usize, const M: usize>(
         for (from_first, group) in (0..).step_by(8).zip(own.points) {
             let from_other = box_squares(group, &other.bounds);
             lower(&mut least, &from_other, reach_squared);
-            for l in 0..(own.count - from_first).min(8) {
-                if from_other[l] > reach_squared {
+            for (l, &from_box) in from_other.iter().enumerate().take(own.count - from_first) {
+                if from_box > reach_squared {
                     continue;
                 }
                 let mut feature = [Vec3::ZERO; N];
@@ -144,8 +144,7 @@ fn near<const N: usize, const M: usize>(
                 if are_beyond(&squares, reach_squared) {
                     continue;
                 }
-                for m in 0..(other.count - from_second).min(8) {
-                    let square = squares[m];
+                for (m, &square) in squares.iter().enumerate().take(other.count - from_second) {
                     if square > reach_squared {
                         continue;
                     }
