@@ -66,7 +66,7 @@ pub use write_back::{ClothLimitExceeded, ClothTorn};
 /// Everything that a game needs: the simulation, its diagnostics and, with their features, the mesh, the gizmos and the
 /// bridge to rapier. Add it after Bevy's own plugins.
 ///
-/// The simulation runs in [`FixedUpdate`]; [`new`](Self::new) chooses another schedule. The panel of the feature `egui`
+/// The simulation runs in [`FixedUpdate`](bevy::app::FixedUpdate); [`new`](Self::new) chooses another schedule. The panel of the feature `egui`
 /// is a separate plugin, `ClothPanelPlugin`.
 #[derive(Debug, Clone, Copy)]
 pub struct DrapePlugins {
