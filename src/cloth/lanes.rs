@@ -45,6 +45,12 @@ pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
+/// The larger of two numbers; NaN if one is.
+#[inline(always)]
+pub(crate) fn larger_or_nan(a: f32, b: f32) -> f32 {
+    if b <= a || a.is_nan() { a } else { b }
+}
+
 /// Eight particles: 256 bytes, four cache lines. The last eight numbers are room for a view to be shifted.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]

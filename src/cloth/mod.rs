@@ -68,7 +68,8 @@ pub use tears::ClothTears;
 pub(crate) use cut::Cut;
 pub(crate) use grouped::Grouped;
 pub(crate) use lanes::{
-    Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z, larger, smaller,
+    Block, DX, DY, DZ, LANES, Lanes, Layout, Run, Slot, View, W, X, Y, Z, larger, larger_or_nan,
+    smaller,
 };
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;

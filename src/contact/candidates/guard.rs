@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use super::blocks::ContactBlock;
-use crate::cloth::{Block, ClothParticles, DX, LANES, Lanes, Slot, X};
+use crate::cloth::{Block, ClothParticles, DX, LANES, Lanes, Slot, X, larger_or_nan};
 
 /// Displacements since the search: of each particle, and of a shape's surface.
 ///
@@ -42,7 +42,7 @@ impl Guard {
     pub fn tell(&self, contacts: &mut [ContactBlock]) {
         for contact in contacts {
             let moved = &self.moved[contact.block as usize];
-            contact.moved = moved.iter().copied().fold(0.0, nan_or_larger);
+            contact.moved = moved.iter().copied().fold(0.0, larger_or_nan);
         }
     }
 
@@ -50,7 +50,7 @@ impl Guard {
     pub fn note(&mut self, slot: Slot, push: f32) {
         let moved = &mut self.moved[slot.block][slot.lane];
         *moved += push;
-        self.most = nan_or_larger(self.most, *moved);
+        self.most = larger_or_nan(self.most, *moved);
     }
 
     /// Until when a clearance (m) lasts that was found around particles: for [`is_clear`](Self::is_clear).
@@ -78,14 +78,8 @@ impl Guard {
     #[inline]
     fn moved(&self, around: &[Slot]) -> f32 {
         let each = around.iter().map(|slot| self.moved[slot.block][slot.lane]);
-        each.fold(0.0, nan_or_larger)
+        each.fold(0.0, larger_or_nan)
     }
-}
-
-/// The larger of two; NaN is the largest.
-#[inline]
-fn nan_or_larger(a: f32, b: f32) -> f32 {
-    if b <= a || a.is_nan() { a } else { b }
 }
 
 /// Returns the largest displacement (m); NaN if a position is.
@@ -112,12 +106,12 @@ fn measure(
             }
         }
         for lane in 0..LANES {
-            let far = nan_or_larger(ends[lane], starts[lane]).sqrt() * (1.0 + 1.0e-6);
+            let far = larger_or_nan(ends[lane], starts[lane]).sqrt() * (1.0 + 1.0e-6);
             moved[block][lane] = far;
-            most[lane] = nan_or_larger(most[lane], far);
+            most[lane] = larger_or_nan(most[lane], far);
         }
     }
-    most.into_iter().fold(0.0, nan_or_larger)
+    most.into_iter().fold(0.0, larger_or_nan)
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use super::{
     compare::OF_REST, flattened::Scratch, motion::Motion, near_patches::Meets,
     participant::Participant, patch_pair::PatchPair,
 };
+use crate::cloth::larger_or_nan;
 
 /// Smallest slack of an unfolded window, as a fraction of the thickness or of a flat one's slack. With less, small motion would soon
 /// use it up; a pair of patches has a slack of its own.
@@ -85,15 +86,8 @@ fn used(patches: &[u32], ends: &[Vec4], references: &[Vec4]) -> f32 {
         let moved = end - middle.extend(0.0) - *reference;
         Vec3A::from_vec4(moved).length() + moved.w
     });
-    // NaN stays: such a window is measured.
-    let most = |most: f32, used: f32| {
-        if used <= most || most.is_nan() {
-            most
-        } else {
-            used
-        }
-    };
-    2.0 * used.fold(0.0, most)
+    // A window at NaN is measured.
+    2.0 * used.fold(0.0, larger_or_nan)
 }
 
 impl Folds {

@@ -70,7 +70,7 @@ fn in_vain(pin: &Pin, surface: &Surface) -> String {
     )
 }
 
-/// What a spring of a grid costs in a sub-step (s), at least. `cargo bench --profile dev --bench solver` measures 1.5 to 2.2 ns on a thread
+/// Least cost of a spring of a grid in a sub-step (s). `cargo bench --profile dev --bench solver` measures 1.5 to 2.2 ns on a thread
 /// of a 2-core AMD EPYC for 64² to 512² particles; this leaves room for a faster machine.
 const GRID_SPRING: f32 = 1.0e-9;
 
@@ -80,7 +80,7 @@ const MESH_SPRING: f32 = 3.0e-9;
 /// The bending of a mesh costs as much again as its springs.
 const BENT_MESH: f32 = 2.0;
 
-/// What the sub-steps of a tick cost at least (s) on so many `threads`, whatever the cloth touches.
+/// Least cost of the sub-steps of a tick on so many `threads` (s), without contact.
 fn least_cost(springs: &Springs, material: &ClothMaterial, substeps: u32, threads: usize) -> f32 {
     let spring = if springs.are_of_grid() {
         GRID_SPRING

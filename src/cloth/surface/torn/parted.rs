@@ -46,7 +46,7 @@ impl Surface {
                     moves.extend([(a.particle, away), (b.particle, -away)]);
                 }
             }
-            // What met the others in a point alone, or is folded onto them, moves to the middles of its faces.
+            // A side that met the others in a point alone, or is folded onto them, moves to the middles of its faces.
             let is_alone = |corner: &&Corner| moves.iter().all(|(of, _)| *of != corner.particle);
             let to_middle = |corner: &Corner| (corner.particle, corner.middle.normalize_or_zero());
             let alone: Vec<_> = around.iter().filter(is_alone).map(to_middle).collect();
