@@ -55,6 +55,9 @@ pub struct ClothMaterialMap {
     /// Scales the friction μ against colliders. Zero or more, and finite. A triangle that lies on a sharp edge has the factor of its first
     /// particle. Cloth on cloth has the friction of [`ClothSelfCollision`](crate::contact::ClothSelfCollision) alone.
     pub friction: ClothFactor,
+    /// Scales the thickness of [`ClothSelfCollision`](crate::contact::ClothSelfCollision), which is that of the thickest part: from 0.1 to
+    /// 1. A face and an edge have the mean of their corners. A change of it searches for all layers anew.
+    pub thickness: ClothFactor,
 }
 
 /// A factor for each particle: a base, plus what is painted.
@@ -147,10 +150,13 @@ impl ClothMaterialMap {
         let stretch = (self.stretch).values(surface, "factor of the stiffness", of_stretch)?;
         let bending = (self.bending).values(surface, "factor of the rigidity", of_bending)?;
         let friction = (self.friction).values(surface, "factor of the friction", or_zero)?;
+        let thinner: Range = ("from 0.1 to 1", |of| (0.1..=1.0).contains(&of));
+        let thickness = (self.thickness).values(surface, "factor of the thickness", thinner)?;
         Ok(MaterialFactors {
             density: DensityFactors::new(density, surface),
             stiffness: Arc::new(StiffnessFactors { stretch, bending }),
             grips: by_block(&friction, surface).into(),
+            thickness: ThicknessFactors::of(thickness).map(Arc::new),
         })
     }
 }
@@ -162,6 +168,33 @@ pub(crate) struct MaterialFactors {
     pub stiffness: Arc<StiffnessFactors>,
     /// Of μ, by the blocks of particles; empty if all are 1.
     pub grips: Arc<[Lanes]>,
+    /// `None` if all are 1.
+    pub thickness: Option<Arc<ThicknessFactors>>,
+}
+
+/// The factors of the thickness of layers, one a particle.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ThicknessFactors {
+    each: Vec<f32>,
+    pub least: f32,
+}
+
+impl ThicknessFactors {
+    /// `None` without any.
+    pub fn of(each: Vec<f32>) -> Option<Self> {
+        let least = each.iter().copied().reduce(f32::min)?;
+        Some(Self { each, least })
+    }
+
+    pub fn each(&self) -> &[f32] {
+        &self.each
+    }
+
+    /// The mean of the factors of some particles.
+    pub fn mean<const N: usize>(&self, particles: [u32; N]) -> f32 {
+        let each = particles.iter().map(|&of| self.each[of as usize]);
+        each.sum::<f32>() / N as f32
+    }
 }
 
 /// One value a particle, by the blocks of particles.

@@ -73,7 +73,7 @@ pub(crate) use lanes::{
 };
 pub(crate) use limits::FARTHEST;
 pub(crate) use material::Woven;
-pub(crate) use material_map::MaterialFactors;
+pub(crate) use material_map::{MaterialFactors, ThicknessFactors};
 pub(crate) use particles::{DensityFactors, Earlier, Load, StepKind};
 pub(crate) use presence::ClothPresence;
 pub(crate) use sewing::{SewnSide, Stitch, stitches};

@@ -691,3 +691,81 @@ fn a_map_wakes_what_sleeps_and_leaves_what_is_held() {
             .remove::<ClothMaterialMap>();
     }
 }
+
+/// Two sheets lie on each other, on a plane. Their layers are as far apart as their thickness is there, also after it changes.
+#[test]
+fn layers_are_as_thick_as_their_map() {
+    let thickness = 0.01;
+    let thinner = ClothMaterialMap {
+        thickness: ClothFactor::of(ClothPaint::at_rest(
+            |place| if place.x < 0.0 { 0.3 } else { 1.0 },
+        )),
+        ..default()
+    };
+    let material = ClothMaterial {
+        bend_rigidity: 0.0,
+        ..ClothMaterial::COTTON
+    };
+    let sheet = |height: f32| {
+        (
+            Cloth::new(25, 25, 0.025).lying().centred(),
+            Transform::from_xyz(0.0, height, 0.0),
+            Pins::none(),
+            material,
+            ClothSelfCollision::of_thickness(thickness),
+        )
+    };
+    let mut app = app();
+    app.world_mut()
+        .spawn((ClothCollider::plane(), Transform::default()));
+    let sheets = [0.01, 0.03].map(|height| {
+        let bundle = (sheet(height), thinner.clone());
+        app.world_mut().spawn(bundle).id()
+    });
+    // The mean gap of either half, away from the middle.
+    let gaps = |app: &App| {
+        let [below, above] = sheets.map(|sheet| particles(app, sheet).positions());
+        let all: Vec<[f32; 2]> = below.zip(above).map(|(a, b)| [a.x, b.y - a.y]).collect();
+        [-1.0, 1.0].map(|side| {
+            let half = all.iter().filter(|of| of[0] * side > 0.1);
+            let gaps: Vec<f32> = half.map(|of| of[1]).collect();
+            gaps.iter().sum::<f32>() / gaps.len() as f32
+        })
+    };
+    let expect = |app: &App, factors: [f32; 2]| {
+        let gaps = gaps(app).map(|gap| gap / thickness);
+        println!("{gaps:?} of {factors:?}");
+        for (gap, factor) in gaps.into_iter().zip(factors) {
+            // Resting layers are up to a twenty-fifth closer.
+            let of = gap / factor;
+            assert!((0.95..1.1).contains(&of), "{gaps:?} of {factors:?}");
+        }
+    };
+    tick(&mut app, 400);
+    expect(&app, [0.3, 1.0]);
+    for sheet in sheets {
+        change::<ClothMaterialMap>(&mut app, sheet, |map| map.thickness = default());
+    }
+    tick(&mut app, 400);
+    expect(&app, [1.0, 1.0]);
+    // One of both is thin.
+    change::<ClothMaterialMap>(&mut app, sheets[1], |map| map.thickness = thinner.thickness);
+    tick(&mut app, 400);
+    expect(&app, [0.65, 1.0]);
+    for factor in [0.0, 0.05, 1.5, f32::NAN] {
+        expect_fault(
+            (Cloth::default(), Pins::none()),
+            |app, entity| {
+                let map = ClothMaterialMap {
+                    thickness: ClothFactor::of(factor),
+                    ..default()
+                };
+                app.world_mut().entity_mut(entity).insert(map);
+            },
+            |error| error.quantity().is_some(),
+            |app, entity| {
+                change::<ClothMaterialMap>(app, entity, |map| *map = default());
+            },
+        );
+    }
+}

@@ -3,12 +3,15 @@
 use bevy::math::Isometry3d;
 
 use super::{participant::Participant, settings::ClothSelfCollision};
+use crate::cloth::ThicknessFactors;
 
 /// The inputs of a search for pairs besides the particles' positions.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Circumstances {
     of: Vec<(ClothSelfCollision, bool, Option<Isometry3d>)>,
+    /// The factors of the thickness of all cloths that have them, one after the other.
+    thickness: Vec<f32>,
     meets: Vec<bool>,
 }
 
@@ -19,16 +22,22 @@ impl Circumstances {
             let each = cloths.iter();
             each.map(|cloth| (cloth.settings, cloth.is_fixed, cloth.to_common))
         };
+        let thickness = || cloths.iter().filter_map(|cloth| cloth.thickness);
+        let thickness = || thickness().flat_map(ThicknessFactors::each).copied();
         let count = cloths.len();
         let meets = || {
             (0..count)
                 .flat_map(|a| (0..a).map(move |b| (a, b)))
                 .map(|(a, b)| meets(a, b))
         };
-        let is_same = self.of.iter().copied().eq(of()) && self.meets.iter().copied().eq(meets());
+        let is_same = self.of.iter().copied().eq(of())
+            && self.thickness.iter().copied().eq(thickness())
+            && self.meets.iter().copied().eq(meets());
         if !is_same {
             self.of.clear();
             self.of.extend(of());
+            self.thickness.clear();
+            self.thickness.extend(thickness());
             self.meets.clear();
             self.meets.extend(meets());
         }

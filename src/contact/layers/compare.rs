@@ -16,7 +16,7 @@ use super::{
     sheet::Sheet,
     work::{WORK_OF_CROSSING, WORK_OF_EIGHT, WORK_OF_GATHERING},
 };
-use crate::cloth::MapInline;
+use crate::cloth::{MapInline, ThicknessFactors};
 
 /// Distance of edges, as a fraction of the thickness. Vertices and faces keep flat layers apart. Edges that cross
 /// between them show where both bend, and only must not pass. Edges of two ropes keep the whole thickness.
@@ -220,13 +220,17 @@ struct Side<'a> {
     particles: &'a [u32],
     places: &'a [Vec3A],
     bounds: Bounds,
+    /// Its largest thickness (m), and where it is thinner.
+    thickness: f32,
+    factors: Option<&'a ThicknessFactors>,
 }
 
 impl<'a> Side<'a> {
     fn of(motion: &'a Motion, cloths: &'a [Participant], index: u32) -> Self {
         let state = &motion.patches[index as usize];
         let [first_particle, first_patch, _, first_group] = motion.firsts[state.cloth as usize];
-        let sheet = &**cloths[state.cloth as usize].sheet;
+        let cloth = &cloths[state.cloth as usize];
+        let sheet = &**cloth.sheet;
         let patch = index - first_patch;
         let groups = sheet.group_range(patch);
         Self {
@@ -238,7 +242,15 @@ impl<'a> Side<'a> {
             particles: sheet.particles_of(patch),
             places: &motion.start[first_particle as usize..],
             bounds: state.bounds_at_start(),
+            thickness: cloth.settings.thickness,
+            factors: cloth.thickness,
         }
+    }
+
+    /// The thickness of a feature (m).
+    fn thickness_of<const N: usize>(&self, particles: [u32; N]) -> f32 {
+        let factor = self.factors.map_or(1.0, |factors| factors.mean(particles));
+        self.thickness * factor
     }
 
     fn place(&self, local: u16) -> Vec3A {
@@ -321,7 +333,8 @@ impl Features<'_> {
             if self.joined.join(&particles[..1], &particles[1..]) {
                 continue;
             }
-            let thickness = self.allowed(self.thickness, |rest| {
+            let wanted = (own.thickness_of([vertex]) + other.thickness_of(corners)) / 2.0;
+            let thickness = self.allowed(wanted, |rest| {
                 let at_rest = |particle: u32| rest[particle as usize];
                 vertex_to_face(at_rest(vertex), corners.map_inline(at_rest))
             });
@@ -337,9 +350,8 @@ impl Features<'_> {
         // Ropes have no faces to keep them apart.
         let are_ropes = self.sides.iter().all(|side| side.sheet.is_rope());
         let part = if are_ropes { 1.0 } else { EDGES };
-        let wanted = part * self.thickness;
         self.hits.of.clear();
-        let reach_squared = (self.listed + wanted).powi(2);
+        let reach_squared = (self.listed + part * self.thickness).powi(2);
         near_edges(&edges, &others, reach_squared, self.hits);
         let [edges, others] = [own, other].map_inline(|side| side.sheet.edges_of(side.patch));
         for hit in &self.hits.of {
@@ -354,6 +366,7 @@ impl Features<'_> {
             if self.joined.join(&[p, q], &[r, s]) {
                 continue;
             }
+            let wanted = part * (own.thickness_of(ends) + other.thickness_of(other_ends)) / 2.0;
             let thickness = self.allowed(wanted, |rest| {
                 let at_rest = |edge: [u32; 2]| edge.map_inline(|end| rest[end as usize]);
                 edge_to_edge(at_rest(ends), at_rest(other_ends))

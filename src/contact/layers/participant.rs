@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy::math::{Isometry3d, Vec3};
 
 use super::{settings::ClothSelfCollision, sheet::Sheet};
-use crate::cloth::ClothParticles;
+use crate::cloth::{ClothParticles, ThicknessFactors};
 
 /// A cloth and its search structure, among cloths that are simulated together.
 #[derive(Debug)]
@@ -18,6 +18,8 @@ pub(crate) struct Participant<'a> {
     pub to_common: Option<Isometry3d>,
     /// Its contact settings.
     pub settings: ClothSelfCollision,
+    /// Where it is thinner than the settings say.
+    pub thickness: Option<&'a ThicknessFactors>,
     /// Whether nothing moves it, as for a sleeping cloth.
     pub is_fixed: bool,
 }
@@ -53,6 +55,9 @@ impl Participant<'_> {
 
 /// The smallest thickness of some cloths (m).
 pub(super) fn thinnest(cloths: &[Participant]) -> f32 {
-    let each = cloths.iter().map(|cloth| cloth.settings.thickness);
+    let each = cloths.iter().map(|cloth| {
+        let least = cloth.thickness.map_or(1.0, |factors| factors.least);
+        cloth.settings.thickness * least
+    });
     each.fold(f32::INFINITY, f32::min)
 }

@@ -54,6 +54,8 @@ pub(super) fn participants<'a>(members: &'a mut [Member]) -> Few<Participant<'a>
         let cloth = &mut member.cloth;
         Some(Participant {
             settings: cloth.scratch.self_collision?,
+            thickness: (cloth.built.from.as_ref())
+                .and_then(|from| from.factors.thickness.as_deref()),
             particles: &mut cloth.particles,
             sheet: cloth.built.shared.sheet(),
             to_common: member.to_common,

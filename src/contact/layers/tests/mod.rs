@@ -205,6 +205,7 @@ fn participants(cloths: &mut [Sheeted], settings: ClothSelfCollision) -> Vec<Par
         sheet: &cloth.sheet,
         to_common: None,
         settings,
+        thickness: None,
         is_fixed: false,
     })
     .collect()

@@ -14,10 +14,10 @@ use crate::contact::layers::{MutualContact, intersections, intersections::passes
 
 /// Distance that features keep, as a fraction of the thickness for edges, and of the distance at rest.
 const OF_EDGES: f64 = 0.5;
-const OF_REST: f64 = 0.5;
+pub(super) const OF_REST: f64 = 0.5;
 
 /// The distance of two features in one plane that do not cross: it is at a corner of one of them.
-fn in_plane(first: &[DVec3], second: &[DVec3]) -> f64 {
+pub(super) fn in_plane(first: &[DVec3], second: &[DVec3]) -> f64 {
     let from = |corners: &[DVec3], of: &[DVec3]| {
         (corners.iter())
             .map(|at| nearest(of, *at).distance(*at))
@@ -85,13 +85,10 @@ fn no_pair_of_a_torn_cloth_is_lost() {
             }
             contact.counts.work = usize::MAX;
             contact.motion.read(&of);
-            contact.motion.measure_all();
-            contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let listed: HashSet<Feature> = contact.near.all().map(feature).collect();
             let contacts = near_features(&contact);
-            contact.motion.pass(&of, 0.05 * thickness);
-            contact.near.pass(&of, &contact.motion);
+            contact.motion.pass();
             brute.near(&places(&cloths[0]), reach, |feature, apart| {
                 let name = || format!("step {step} of {seed}: {feature:?}, {apart} m apart");
                 let [first, second] = [&feature.0, &feature.1].map(|of| {
