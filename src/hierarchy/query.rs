@@ -63,7 +63,8 @@ impl TopDownQuery {
     /// Tests every particle instead, eight at a time: for cloths too small for a tree.
     pub fn scan(&mut self, particles: &ClothParticles, probe: &Probe) -> Range<usize> {
         let first = self.found.candidates.len();
-        scan(particles, probe, &mut self.found.candidates);
+        let (blocks, layout) = (particles.blocks(), particles.layout());
+        scan(blocks, layout, probe, &mut self.found.candidates);
         self.found.leaf_tests += particles.len();
         first..self.found.candidates.len()
     }

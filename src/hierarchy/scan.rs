@@ -3,15 +3,11 @@
 use multiversion::multiversion;
 
 use super::probe::Probe;
-use crate::cloth::{Block, ClothParticles, LANES, Layout};
+use crate::cloth::{Block, LANES, Layout};
 
 /// Appends the indices of all particles that `probe` meets.
-pub(super) fn scan(particles: &ClothParticles, probe: &Probe, found: &mut Vec<u32>) {
-    scan_blocks(particles.blocks(), particles.layout(), probe, found);
-}
-
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
-fn scan_blocks(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
+pub(super) fn scan(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
     let reach = probe.reach() as f32;
     for (index, block) in blocks.iter().enumerate() {
         if probe.core.may_reach_any(block.view(), reach) {

@@ -1,6 +1,6 @@
 //! k-DOPs (Klosowski et al. 1998): polytopes between pairs of parallel planes with fixed directions.
 
-use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
+use bevy::math::{Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
     aabb::unite_slab,
@@ -37,11 +37,6 @@ pub struct KDop<const N: usize> {
 }
 
 impl<const N: usize> KDop<N> {
-    /// Normals of the pairs of planes, of length 1, √2 or √3.
-    pub fn axes() -> [Vec3; N] {
-        std::array::from_fn(|at| Vec3::from(Self::axis(at)))
-    }
-
     /// An 18-DOP cuts edges and keeps corners.
     #[inline(always)]
     const fn axis(at: usize) -> [f32; 3] {
@@ -160,18 +155,6 @@ impl<const N: usize> Volume for KDop<N> {
         let slabs = self.slabs().skip(3);
         let slabs = slabs.map(|(axis, low, high)| Slab { axis, low, high });
         slabs::may_reach(slabs, probe, reach, self.size())
-    }
-
-    fn holds(&self, centre: DVec3, radius: f64) -> bool {
-        self.slabs().all(|(axis, low, high)| {
-            let axis = axis.as_dvec3();
-            let (middle, half) = (centre.dot(axis), radius * axis.length());
-            f64::from(low) <= middle - half && middle + half <= f64::from(high)
-        })
-    }
-
-    fn holds_volume(&self, other: &Self) -> bool {
-        (0..N).all(|at| self.low[at] <= other.low[at] && other.high[at] <= self.high[at])
     }
 
     fn faces(&self) -> Vec<Vec<Vec3>> {
