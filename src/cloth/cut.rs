@@ -40,15 +40,11 @@ impl Cut {
                 return;
             }
             let pieces = [[way[0], way[1]], [way[1], way[2]]];
-            let crossings = pieces
-                .iter()
-                .flat_map(|piece| self.triangles.iter().map(move |of| (piece, of)));
-            if crossings
-                .filter(|(piece, triangle)| crosses(**piece, **triangle))
-                .count()
-                % 2
-                == 1
-            {
+            let crossings = pieces.map(|piece| {
+                let crossed = self.triangles.iter().filter(|of| crosses(piece, **of));
+                crossed.count()
+            });
+            if crossings.iter().sum::<usize>() % 2 == 1 {
                 edges.push(ends.map(|end| surface.origin_of(end)));
             }
         });

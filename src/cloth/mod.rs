@@ -81,5 +81,5 @@ pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage, StiffnessFactors};
 pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, GridStencil, ShortestPaths};
 #[cfg(feature = "mesh")]
-pub(crate) use surface::{JointWeights, same_places, skin_of_asset};
+pub(crate) use surface::{JointWeights, add_face_normals, same_places, skin_of_asset};
 pub(crate) use tearing::{Strength, TearSearch};
