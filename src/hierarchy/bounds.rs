@@ -38,8 +38,8 @@ impl NodeBounds {
             self.volumes = Volumes::of(volume);
         }
         self.size = tree.size();
-        tree.shape()
-            .rebuild(&mut self.volumes, rule, particles, stretch);
+        let shape = tree.shape();
+        shape.rebuild(&mut self.volumes, rule, particles, stretch);
         Ok(())
     }
 
@@ -71,8 +71,7 @@ impl NodeBounds {
             BoundRule::Paper => 0.0,
             BoundRule::Refit | BoundRule::RestShape => particle_radius,
         };
-        tree.shape()
-            .volume(&self.volumes, particles, node)
-            .inflated(radius)
+        let volume = tree.shape().volume(&self.volumes, particles, node);
+        volume.inflated(radius)
     }
 }

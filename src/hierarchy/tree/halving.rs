@@ -102,13 +102,11 @@ impl GridTree {
                 part.block = part.middle * strip;
             }
             let width = columns[0].full_end;
+            let in_strip = columns.iter().take_while(|part| part.span.start < strip);
             let parts_in_strip = if width > strip {
                 0
             } else {
-                columns
-                    .iter()
-                    .take_while(|part| part.span.start < strip)
-                    .count() as u32
+                in_strip.count() as u32
             };
             for (index, part) in columns.iter_mut().enumerate() {
                 (part.block, part.lane) = (part.middle % strip, part.middle / strip);
@@ -144,11 +142,8 @@ impl GridTree {
     /// The parts of a node of `level`.
     pub fn parts(&self, level: usize, node: u32) -> (u32, u32) {
         let level = &self.levels[level];
-        let columns = level.columns.len() as u32;
-        (
-            (node - level.first) / columns,
-            (node - level.first) % columns,
-        )
+        let (index, columns) = (node - level.first, level.columns.len() as u32);
+        (index / columns, index % columns)
     }
 }
 
@@ -185,10 +180,8 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
             let (start, end) = (parent.span.start, parent.full_end);
             let half = start + (end - start).div_ceil(unit).div_ceil(2) * unit;
             let halves = [start..half.min(end), half.min(end)..end];
-            let there = halves
-                .into_iter()
-                .filter(|half| half.start < count && !half.is_empty());
-            below.extend(there.map(part));
+            let exists = |half: &Range<u32>| half.start < count && !half.is_empty();
+            below.extend(halves.into_iter().filter(exists).map(part));
             parent.children = first..below.len() as u32;
         }
         levels.push(below);

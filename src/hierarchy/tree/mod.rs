@@ -51,11 +51,11 @@ impl QuadTree {
     pub fn of_surface(surface: &Surface, diagonals: bool) -> Self {
         match surface.as_grid() {
             Some(grid) => Self::of_grid(grid, diagonals),
-            None => Self(Arc::new(NetworkTree::new(
-                surface.rest_positions(),
-                surface.layout(),
-                surface.graph(),
-            ))),
+            None => {
+                let (layout, graph) = (surface.layout(), surface.graph());
+                let tree = NetworkTree::new(surface.rest_positions(), layout, graph);
+                Self(Arc::new(tree))
+            }
         }
     }
 
@@ -144,11 +144,8 @@ impl QuadTree {
 /// The sphere around both. Pieces may be as far apart as numbers go, or lost, so no length overflows: `f64`.
 fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere {
     let (from, to) = (around.center.as_dvec3(), centre.as_dvec3());
-    let [one, other, apart] = [
-        f64::from(around.radius()),
-        f64::from(radius),
-        from.distance(to),
-    ];
+    let [one, other] = [around.radius(), radius].map(f64::from);
+    let apart = from.distance(to);
     if one >= apart + other {
         return *around;
     }
