@@ -31,6 +31,8 @@ mod tearing;
 mod tears;
 
 pub(crate) use arrays::MapInline;
+#[cfg(feature = "mesh")]
+pub(crate) use arrays::sorted;
 pub use error::{
     BoundsError, ClothError, SelfCollisionError, ShapeError, TargetError, TransformError,
 };

@@ -5,6 +5,7 @@ use crate::cloth::ClothParticles;
 
 /// Returns the indices of all particles that `probe` meets, tested one by one in f64.
 pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {
-    let meets = |index: &u32| probe.meets(particles.position_at(*index as usize));
-    (0..particles.len() as u32).filter(meets).collect()
+    let places = particles.positions().enumerate();
+    let met = places.filter(|(_, place)| probe.meets(*place));
+    met.map(|(index, _)| index as u32).collect()
 }

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::tube;
-use crate::cloth::{Surface, TriangleMesh};
+use crate::cloth::{Surface, TriangleMesh, sorted};
 
 /// A mesh of a surface at rest, with the vertices that it was made from, and texture coordinates and tangents where it has
 /// them.
@@ -84,18 +84,15 @@ impl TornVertices {
             return Self::default();
         }
         let vertices = surface.vertices();
-        let whole = (0..vertices).map(|vertex| surface.particle_of_vertex(vertex));
-        let mut particles: Vec<u32> = whole
-            .map(|of| of.map_or(u32::MAX, |of| of as u32))
-            .collect();
+        let particle = |vertex| surface.particle_of_vertex(vertex);
+        let whole = (0..vertices).map(|vertex| particle(vertex).map_or(u32::MAX, |of| of as u32));
+        let mut particles: Vec<u32> = whole.collect();
         let faces = surface.faces_by_origin();
         let mut origins: Vec<u32> = (0..vertices as u32).collect();
         let mut split: HashMap<(u32, u32), u32> = HashMap::default();
         for triangle in &mut triangles {
             let of_vertices = triangle.map(|vertex| particles[vertex as usize]);
-            let mut sorted = of_vertices;
-            sorted.sort_unstable();
-            let Some(face) = faces.get(&sorted) else {
+            let Some(face) = faces.get(&sorted(of_vertices)) else {
                 continue;
             };
             for (vertex, whole) in triangle.iter_mut().zip(of_vertices) {
@@ -135,7 +132,7 @@ pub(in crate::plugin::draw) fn with_triangles<'a>(
 pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVertices)> {
     let TriangleMesh {
         positions,
-        triangles,
+        mut triangles,
         normals,
         ..
     } = TriangleMesh::of_asset(asset).ok()?;
@@ -150,22 +147,15 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVert
     // And the bounds of a skeleton are not the cloth's.
     mesh.set_skinned_mesh_bounds(None);
     if normals.is_empty() {
-        mesh.insert_attribute(
-            Mesh::ATTRIBUTE_NORMAL,
-            vec![Vec3::Y.to_array(); positions.len()],
-        );
+        let up = vec![Vec3::Y.to_array(); positions.len()];
+        mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, up);
     }
-    let moves = |triangle: &&[u32; 3]| {
-        let mut corners = triangle.iter();
-        corners.all(|corner| surface.particle_of_vertex(*corner as usize).is_some())
-    };
-    if triangles.iter().filter(moves).count() < triangles.len() {
-        mesh = with_triangles(&mesh, triangles.iter().filter(moves));
+    let count = triangles.len();
+    let moves = |corner: &u32| surface.particle_of_vertex(*corner as usize).is_some();
+    triangles.retain(|triangle| triangle.iter().all(moves));
+    if triangles.len() < count {
+        mesh = with_triangles(&mesh, triangles.iter());
     }
-    let triangles = triangles
-        .into_iter()
-        .filter(|triangle| moves(&triangle))
-        .collect();
     let vertices = TornVertices::split(&mut mesh, surface, triangles);
     Some((mesh, vertices))
 }
@@ -213,10 +203,9 @@ impl Tangents {
         let Ok(TriangleMesh { triangles, uvs, .. }) = TriangleMesh::of_asset(mesh) else {
             return Self::default();
         };
-        let exists =
-            |triangle: &[u32; 3]| triangle.iter().all(|corner| (*corner as usize) < uvs.len());
+        let exists = |corner: &u32| (*corner as usize) < uvs.len();
         let has_tangents = mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT).is_ok();
-        if !has_tangents || !triangles.iter().all(exists) {
+        if !has_tangents || !triangles.iter().flatten().all(exists) {
             return Self::default();
         }
         let parts = |triangle: &[u32; 3]| {
@@ -250,9 +239,9 @@ impl Tangents {
             for (triangle, parts) in triangles.iter().zip(parts) {
                 let [a, b, c] = triangle.map(|corner| Vec3::from(places[corner as usize]));
                 let along = (b - a) * parts[0] + (c - a) * parts[1];
-                triangle
-                    .iter()
-                    .for_each(|corner| sums[*corner as usize] += along);
+                for corner in triangle {
+                    sums[*corner as usize] += along;
+                }
             }
         }
         let (Some(normals), Some(tangents)) = (vectors.normals, vectors.tangents) else {

@@ -56,13 +56,12 @@ impl Driven {
         mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
         let own: Vec<_> = normals.iter().map(Vec3::to_array).collect();
         mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, own);
-        let mut tangents: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT) {
-            Ok(VertexAttributeValues::Float32x4(values)) => {
-                let tangent = |value: &[f32; 4]| Vec4::from(*value).truncate();
-                values.iter().map(tangent).collect()
-            }
-            _ => Vec::new(),
+        let tangents: &[[f32; 4]] = match mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT) {
+            Ok(VertexAttributeValues::Float32x4(values)) => values,
+            _ => &[],
         };
+        let tangent = |value: &[f32; 4]| Vec4::from(*value).truncate();
+        let mut tangents: Vec<Vec3> = tangents.iter().map(tangent).collect();
         let to_surface = Affine3A::from(rigid(&cloth.affine()).inverse()) * place.affine();
         let for_normals = to_surface.matrix3.inverse().transpose();
         if !(to_surface.is_finite() && for_normals.is_finite()) {
