@@ -111,18 +111,16 @@ struct PointerHand {
     distance: f32,
 }
 
+type Looks = (
+    Option<&'static ViewVisibility>,
+    Option<&'static RenderLayers>,
+    Option<&'static Pickable>,
+);
+
 /// The entities that pointers may hit.
 #[derive(SystemParam)]
 struct Pickables<'w, 's> {
-    all: Query<
-        'w,
-        's,
-        (
-            Option<&'static ViewVisibility>,
-            Option<&'static RenderLayers>,
-            Option<&'static Pickable>,
-        ),
-    >,
+    all: Query<'w, 's, Looks>,
     cloths: Query<'w, 's, (), With<Cloth>>,
     #[cfg(feature = "mesh")]
     driven: Query<'w, 's, (Entity, &'static ClothRenderMesh), Without<Cloth>>,

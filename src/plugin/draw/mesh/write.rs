@@ -32,13 +32,11 @@ pub(super) fn mesh_of(surface: &Surface) -> (Mesh, TornVertices) {
     let normals: Vec<_> = particles.map(|of| normal(of).to_array()).collect();
     let corners = surface.triangles().iter().flatten();
     let indices = corners.map(|corner| vertex_of[*corner as usize]).collect();
-    let mut mesh = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::default(),
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-    .with_inserted_indices(Indices::U32(indices));
+    let usage = RenderAssetUsages::default();
+    let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, usage)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_indices(Indices::U32(indices));
     // Surfaces that the game gives as triangles have none.
     if surface.uvs().len() == count {
         let uvs: Vec<_> = surface.uvs().iter().map(Vec2::to_array).collect();
@@ -224,11 +222,7 @@ impl Tangents {
 
     /// Writes the tangents, if there are any.
     pub fn write(&mut self, vectors: Vectors) {
-        let Self {
-            triangles,
-            parts,
-            sums,
-        } = self;
+        let (triangles, parts, sums) = (&self.triangles, &self.parts, &mut self.sums);
         if triangles.is_empty() {
             return;
         }
