@@ -1,9 +1,9 @@
-//! The search without a tree: all particles, eight at a time.
+//! The search without a tree: all particles, eight at a time, or one by one in f64.
 
 use multiversion::multiversion;
 
 use super::probe::Probe;
-use crate::cloth::{Block, LANES, Layout};
+use crate::cloth::{Block, ClothParticles, LANES, Layout};
 
 /// Appends the indices of all particles that `probe` meets.
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
@@ -27,4 +27,11 @@ fn meet(block: &Block, index: usize, layout: Layout, probe: &Probe, found: &mut 
             found.push(particle);
         }
     }
+}
+
+/// Returns the indices of all particles that `probe` meets, tested one by one in f64.
+pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {
+    let places = particles.positions().enumerate();
+    let met = places.filter(|(_, place)| probe.meets(*place));
+    met.map(|(index, _)| index as u32).collect()
 }

@@ -1,6 +1,5 @@
 //! The particles of a cloth, as a structure of arrays.
 
-mod body;
 mod density;
 mod error;
 mod extent;

@@ -21,11 +21,8 @@ impl ClothParticles {
     /// The memory layout, or an empty one if a scene file or an inspector has written an invalid one. The particles are
     /// then rebuilt.
     pub(super) fn valid_layout(&self) -> Layout {
-        if self.layout.is_valid() && self.blocks.len() == self.layout.blocks() {
-            self.layout
-        } else {
-            Layout::default()
-        }
+        let is_valid = self.layout.is_valid() && self.blocks.len() == self.layout.blocks();
+        is_valid.then_some(self.layout).unwrap_or_default()
     }
 
     /// Replaces an invalid sub-step with the default.

@@ -78,10 +78,8 @@ impl Pin {
     fn for_each_whole(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
         let scale = surface.scale();
         let places = || {
-            surface
-                .whole_positions()
-                .map(|place| place / scale)
-                .enumerate()
+            let unscaled = surface.whole_positions().map(|place| place / scale);
+            unscaled.enumerate()
         };
         match self {
             Self::Index(index) => pinned(*index),
@@ -138,10 +136,12 @@ impl Pin {
             Self::Corner(Corner::TopRight) => cell(0, last_column),
             Self::Corner(Corner::BottomLeft) => cell(last_row, 0),
             Self::Corner(Corner::BottomRight) => cell(last_row, last_column),
-            Self::Where(predicate) => grid
-                .cells()
-                .filter(|&(row, column)| predicate.holds(row, column))
-                .for_each(|(row, column)| cell(row, column)),
+            Self::Where(predicate) => {
+                let found = grid
+                    .cells()
+                    .filter(|(row, column)| predicate.holds(*row, *column));
+                found.for_each(|(row, column)| cell(row, column));
+            }
             Self::Index(_)
             | Self::Vertex(_)
             | Self::Near { .. }

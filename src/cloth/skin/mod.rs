@@ -171,10 +171,9 @@ impl ClothSkin {
 
     /// The blended max distance (m) of a particle, on a cloth of a diagonal (m).
     pub(crate) fn blended(&self, max_distance: f32, diagonal: f32) -> f32 {
-        if self.blend == 1.0 {
-            max_distance
-        } else {
-            self.blend * max_distance.min(2.0 * diagonal)
+        match self.blend {
+            1.0 => max_distance,
+            blend => blend * max_distance.min(2.0 * diagonal),
         }
     }
 }

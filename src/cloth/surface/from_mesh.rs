@@ -227,12 +227,8 @@ impl Welded {
             let values = merged(of.values(), &self.particle_of, particles, larger);
             VertexAttribute::new(of.name(), values)
         };
-        let attributes = mesh
-            .attributes
-            .iter()
-            .filter(is_whole)
-            .map(attribute)
-            .collect();
+        let attributes = mesh.attributes.iter().filter(is_whole);
+        let attributes = attributes.map(attribute).collect();
         let most = count_faces(faces.all(), particles).into_iter().max();
         Surface {
             normals,

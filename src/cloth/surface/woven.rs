@@ -69,10 +69,9 @@ impl Surface {
             .map(|face| {
                 let normal = self.face_normal(*face);
                 let within = axis.reject_from_normalized(normal);
-                if within.length() > PERPENDICULAR {
-                    within.normalize()
-                } else {
-                    normal.any_orthonormal_vector()
+                match within.length() > PERPENDICULAR {
+                    true => within.normalize(),
+                    false => normal.any_orthonormal_vector(),
                 }
             })
             .collect()

@@ -72,10 +72,9 @@ impl GridTree {
         let strip = layout.strip;
         let strips = layout.columns.div_ceil(strip);
         let rows = halved(layout.rows, layout.rows, 1);
-        let full = if strips > 1 {
-            strips * strip
-        } else {
-            layout.columns
+        let full = match strips {
+            ..=1 => layout.columns,
+            _ => strips * strip,
         };
         let columns = halved(full, layout.columns, strip);
         let depth = rows.len().max(columns.len());
@@ -103,11 +102,8 @@ impl GridTree {
             }
             let width = columns[0].full_end;
             let in_strip = columns.iter().take_while(|part| part.span.start < strip);
-            let parts_in_strip = if width > strip {
-                0
-            } else {
-                in_strip.count() as u32
-            };
+            let count = in_strip.count() as u32;
+            let parts_in_strip = if width > strip { 0 } else { count };
             for (index, part) in columns.iter_mut().enumerate() {
                 (part.block, part.lane) = (part.middle % strip, part.middle / strip);
                 part.in_strip = (index as u32).checked_rem(parts_in_strip).unwrap_or(0);

@@ -63,9 +63,8 @@ pub struct ClothPickingPlugin {
 
 impl Default for ClothPickingPlugin {
     fn default() -> Self {
-        Self {
-            button: Some(PointerButton::Primary),
-        }
+        let button = Some(PointerButton::Primary);
+        Self { button }
     }
 }
 

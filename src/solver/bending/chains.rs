@@ -67,12 +67,9 @@ impl ChainBending {
     pub fn new(plate: &Plate) -> Self {
         let layout = plate.layout;
         let (rows, columns) = (layout.rows, layout.columns);
-        let of_row = |row: u32| {
-            if row < rows {
-                plate.across(row, 1)
-            } else {
-                0.0
-            }
+        let of_row = |row: u32| match row < rows {
+            true => plate.across(row, 1),
+            false => 0.0,
         };
         let of_rows = |group: usize| -> Lanes {
             std::array::from_fn(|lane| of_row((group * LANES + lane) as u32))

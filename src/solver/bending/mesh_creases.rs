@@ -197,11 +197,8 @@ impl MeshCreases {
             let flowed: [Vec3; 3] = std::array::from_fn(flowed);
             let squares = flowed.iter().map(|of| of.length_squared());
             let norm = squares.sum::<f32>().sqrt();
-            let part = if norm > face.most {
-                face.most / norm
-            } else {
-                1.0
-            };
+            let most = face.most / norm;
+            let part = if norm > face.most { most } else { 1.0 };
             *rest = flowed.map_inline(|of| (part * of).to_array());
         }
         if has_flowed {

@@ -52,10 +52,8 @@ fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) ->
         // Of the two corners in one column, or in one row.
         let mean = |kind: usize| {
             let count = |at: u32| cells.iter().filter(|cell| cell[kind] == at).count();
-            let on = cells
-                .iter()
-                .zip(corners)
-                .filter(|(cell, _)| count(cell[kind]) == 2);
+            let on = cells.iter().zip(corners);
+            let on = on.filter(|(cell, _)| count(cell[kind]) == 2);
             on.map(|(_, corner)| number(corner, kind)).sum::<f64>() / 2.0
         };
         let curvature =

@@ -57,9 +57,8 @@ impl SurfaceBinding {
         let rest = surface.rest_positions();
         let faces = surface.triangles();
         let mesh = TriMesh::new(rest.to_vec(), faces.to_vec());
-        let mesh = mesh.map_err(|_| MeshError::WithoutArea {
-            triangles: faces.len(),
-        })?;
+        let triangles = faces.len();
+        let mesh = mesh.map_err(|_| MeshError::WithoutArea { triangles })?;
         let mut at_rest = Vec::new();
         surface.normals_at(rest, &mut at_rest);
         let has_tangents = tangents.len() == positions.len() && !tangents.is_empty();

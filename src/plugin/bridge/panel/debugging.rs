@@ -102,11 +102,8 @@ fn search_text(stats: &ClothStats) -> String {
 fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
     let tree = cloth.built.tree();
     let deepest = tree.levels().len().saturating_sub(1);
-    let mut shown = cloth
-        .show
-        .as_deref()
-        .cloned()
-        .unwrap_or_else(ShowClothGizmos::nothing);
+    let shown = cloth.show.as_deref().cloned();
+    let mut shown = shown.unwrap_or_else(ShowClothGizmos::nothing);
     let was = shown.clone();
     let level = was.levels.map(|[first, _]| first.min(deepest));
     let now = level.map_or_else(|| "none".to_string(), |level| format!("level {level}"));
@@ -151,10 +148,8 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
 
     let mut narrow_phase = *cloth.narrow_phase;
     let is_it = |(_, each): &&(&'static str, NarrowPhase)| *each == narrow_phase;
-    let now = NarrowPhase::ALL
-        .iter()
-        .find(is_it)
-        .map_or("", |(name, _)| name);
+    let now = NarrowPhase::ALL.iter().find(is_it);
+    let now = now.map_or("", |(name, _)| name);
     choose(
         ui,
         "contact by",

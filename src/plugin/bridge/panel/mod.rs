@@ -331,11 +331,8 @@ fn draw_fabric(ui: &mut Ui, material: &mut impl DetectChangesMut<Inner = ClothMa
     let mut changed = *material.bypass_change_detection();
     let presets = ClothMaterial::PRESETS;
     let (name, preset) = Quality::nearest(&changed);
-    let now = if preset == changed {
-        name.to_string()
-    } else {
-        format!("{name}, changed")
-    };
+    let mark = if preset == changed { "" } else { ", changed" };
+    let now = format!("{name}{mark}");
     choose(
         ui,
         "fabric",

@@ -138,19 +138,11 @@ impl Weights {
         for index in 0..particles.len() {
             let nearest = nearest(index);
             // All of it beside the pins, nothing at the particle that is farthest from them.
-            let fades = 1.0
-                - if nearest > 0.0 {
-                    nearest / farthest
-                } else {
-                    0.0
-                };
+            let far = nearest / farthest;
+            let fades = 1.0 - if nearest > 0.0 { far } else { 0.0 };
             let share = |distance: f32| {
-                let ratio = if distance > 0.0 {
-                    nearest / distance
-                } else {
-                    1.0
-                };
-                ratio * ratio
+                let ratio = nearest / distance;
+                if distance > 0.0 { ratio * ratio } else { 1.0 }
             };
             let shares = || distances.iter().map(|distance| share(distance[index]));
             let sum: f32 = shares().sum();
