@@ -26,3 +26,14 @@ map_inline!(3: a b c);
 map_inline!(4: a b c d);
 map_inline!(6: a b c d e f);
 map_inline!(8: a b c d e f g h);
+
+/// The same numbers, ascending.
+pub(crate) fn sorted<const N: usize>(mut of: [u32; N]) -> [u32; N] {
+    of.sort_unstable();
+    of
+}
+
+/// The values with these indices.
+pub(super) fn chosen<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
+    indices.iter().map(|at| values[*at as usize]).collect()
+}

@@ -40,15 +40,11 @@ impl Cut {
                 return;
             }
             let pieces = [[way[0], way[1]], [way[1], way[2]]];
-            let crossings = pieces
-                .iter()
-                .flat_map(|piece| self.triangles.iter().map(move |of| (piece, of)));
-            if crossings
-                .filter(|(piece, triangle)| crosses(**piece, **triangle))
-                .count()
-                % 2
-                == 1
-            {
+            let crossings = pieces.map(|piece| {
+                let crossed = self.triangles.iter().filter(|of| crosses(piece, **of));
+                crossed.count()
+            });
+            if crossings.iter().sum::<usize>() % 2 == 1 {
                 edges.push(ends.map(|end| surface.origin_of(end)));
             }
         });
@@ -75,11 +71,8 @@ fn crosses([from, to]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
 
 /// An order of points.
 fn is_before(p: DVec3, q: DVec3) -> bool {
-    let by = p
-        .to_array()
-        .iter()
-        .zip(q.to_array())
-        .map(|(p, q)| p.total_cmp(&q))
-        .find(|order| order.is_ne());
-    by.is_some_and(std::cmp::Ordering::is_lt)
+    let axes = p.to_array().into_iter().zip(q.to_array());
+    let mut orders = axes.map(|(p, q)| p.total_cmp(&q));
+    let order = orders.find(|order| order.is_ne());
+    order.is_some_and(std::cmp::Ordering::is_lt)
 }

@@ -23,22 +23,6 @@ pub enum ClothPlane {
     Lying,
 }
 
-impl ClothPlane {
-    /// The directions along a row and down a column, of length 1.
-    fn axes(self) -> [Vec3; 2] {
-        match self {
-            Self::Hanging => [Vec3::X, Vec3::NEG_Y],
-            Self::Lying => [Vec3::X, Vec3::Z],
-        }
-    }
-
-    /// The normal of the cloth at rest.
-    pub fn normal(self) -> Vec3 {
-        let [along, down] = self.axes();
-        down.cross(along)
-    }
-}
-
 /// The grid of a cloth, before the transform's scale.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]
 #[type_path = "bevy_drape"]
@@ -75,13 +59,12 @@ impl GridShape {
         }
         let name = "spacing (m)";
         QuantityError::check(self.spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
-        let scaled = self.spacing
-            * match self.plane {
-                ClothPlane::Hanging => scale.truncate(),
-                ClothPlane::Lying => scale.xz(),
-            };
-        let axes = self.plane.axes();
-        ClothGrid::new([columns, rows], scaled, axes, scale, self.centred)
+        let (axes, along) = match self.plane {
+            ClothPlane::Hanging => ([Vec3::X, Vec3::NEG_Y], scale.truncate()),
+            ClothPlane::Lying => ([Vec3::X, Vec3::Z], scale.xz()),
+        };
+        let spacing = self.spacing * along;
+        ClothGrid::new([columns, rows], spacing, axes, scale, self.centred)
     }
 }
 
@@ -143,10 +126,8 @@ impl ClothGrid {
         scale: Vec3,
         centred: bool,
     ) -> Result<Self, GridError> {
-        if (columns as usize)
-            .checked_mul(rows as usize)
-            .is_none_or(|count| count > MAX_PARTICLES)
-        {
+        let count = (columns as usize).checked_mul(rows as usize);
+        if count.is_none_or(|count| count > MAX_PARTICLES) {
             return Err(GridError::TooLarge { columns, rows });
         }
         let extent = spacing * Vec2::new(columns as f32, rows as f32);
@@ -246,13 +227,8 @@ impl ClothGrid {
     /// A particle's share of the cloth's area (m²). It is half a cell on a border and a quarter in a corner, so that
     /// the particles' masses add up to density × area.
     pub fn tributary_area(&self, row: u32, column: u32) -> f32 {
-        let share = |index: u32, count: u32| {
-            if index == 0 || index + 1 == count {
-                0.5
-            } else {
-                1.0
-            }
-        };
+        let is_end = |index: u32, count: u32| index == 0 || index + 1 == count;
+        let share = |index, count| if is_end(index, count) { 0.5 } else { 1.0 };
         let spacing = self.spacing();
         spacing.x * share(column, self.columns) * spacing.y * share(row, self.rows)
     }

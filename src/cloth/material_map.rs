@@ -200,11 +200,8 @@ impl ThicknessFactors {
 /// One value a particle, by the blocks of particles.
 fn by_block(values: &[f32], surface: &Surface) -> Vec<Lanes> {
     let layout = surface.layout();
-    let blocks = if values.is_empty() {
-        0
-    } else {
-        layout.blocks()
-    };
+    let all = layout.blocks();
+    let blocks = if values.is_empty() { 0 } else { all };
     let mut lanes = vec![[1.0; LANES]; blocks];
     for (value, slot) in values.iter().zip(layout.slots()) {
         lanes[slot.block][slot.lane] = *value;

@@ -31,6 +31,8 @@ mod tearing;
 mod tears;
 
 pub(crate) use arrays::MapInline;
+#[cfg(feature = "mesh")]
+pub(crate) use arrays::sorted;
 pub use error::{
     BoundsError, ClothError, SelfCollisionError, ShapeError, TargetError, TransformError,
 };
@@ -81,5 +83,5 @@ pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage, StiffnessFactors};
 pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, GridStencil, ShortestPaths};
 #[cfg(feature = "mesh")]
-pub(crate) use surface::{JointWeights, same_places, skin_of_asset};
+pub(crate) use surface::{JointWeights, add_face_normals, same_places, skin_of_asset};
 pub(crate) use tearing::{Strength, TearSearch};

@@ -258,9 +258,8 @@ impl Cloth {
     /// users of the asset see it unchanged.
     #[cfg(feature = "mesh")]
     pub const fn mesh() -> Self {
-        Self::of_shape(ClothShape::Mesh {
-            weld: Self::DEFAULT_WELD,
-        })
+        let weld = Self::DEFAULT_WELD;
+        Self::of_shape(ClothShape::Mesh { weld })
     }
 
     /// Triangles between `positions` (m), in the entity's frame.

@@ -134,11 +134,8 @@ impl RopePath {
             }
             let of_side = (way - reached[at]) / (reached[at + 1] - reached[at]);
             // A side without a length is where both of its ends are.
-            let of_side = if of_side.is_finite() {
-                of_side.clamp(0.0, 1.0)
-            } else {
-                1.0
-            };
+            let inside = of_side.clamp(0.0, 1.0);
+            let of_side = if of_side.is_finite() { inside } else { 1.0 };
             points[at].lerp(points[at + 1], of_side)
         };
         let places: Vec<Vec3> = (0..=parts).map(place).collect();

@@ -67,9 +67,8 @@ pub(super) fn path_of(mesh: &Mesh) -> Result<Vec<Vec3>, RopeError> {
         },
         PrimitiveTopology::LineStrip => indices.array_windows().copied().collect(),
         topology => {
-            return Err(RopeError::Topology {
-                topology: format!("{topology:?}"),
-            });
+            let topology = format!("{topology:?}");
+            return Err(RopeError::Topology { topology });
         }
     };
     let vertices = positions.len();

@@ -40,11 +40,7 @@ impl Stress {
         surface: &Surface,
         places: &[Vec3],
     ) {
-        let Self {
-            around,
-            at_tip,
-            before,
-        } = self;
+        let around = &mut self.around;
         around.clear();
         let areas = (0..surface.len()).map(|particle| surface.area_of(particle));
         around.extend(areas.map(|area| Patch(Vec3::ZERO, Vec3::ZERO, area)));
@@ -61,12 +57,12 @@ impl Stress {
         let rings = (surface.particles_along() / PARTICLES_A_RING).clamp(RINGS_AT_TIP + 1, RINGS);
         for ring in 0..rings {
             if ring == RINGS_AT_TIP {
-                at_tip.clone_from(around);
+                self.at_tip.clone_from(around);
             }
-            before.clone_from(around);
+            self.before.clone_from(around);
             for (particle, patch) in around.iter_mut().enumerate() {
                 for (beside, _) in surface.graph().of(particle as u32) {
-                    let other = before[*beside as usize];
+                    let other = self.before[*beside as usize];
                     *patch = Patch(patch.0 + other.0, patch.1 + other.1, patch.2 + other.2);
                 }
             }
@@ -75,11 +71,7 @@ impl Stress {
 
     /// The force along an edge, over the width of the cloth that bears it (N/m).
     pub fn along(&self, ends: [u32; 2], is_at_tip: bool, places: &[Vec3]) -> f32 {
-        let patches = if is_at_tip {
-            &self.at_tip
-        } else {
-            &self.around
-        };
+        let patches = [&self.around, &self.at_tip][usize::from(is_at_tip)];
         let [from, to] = ends.map_inline(|end| places[end as usize]);
         let d = (to - from).normalize_or_zero();
         let mixed = 2.0 * d * Vec3::new(d.y, d.z, d.x);

@@ -166,16 +166,14 @@ impl TearSearch {
 
     /// Finds the edges that are stretched too far.
     fn find_stretched(&mut self, strength: Strength, surface: &Surface) {
-        let Self {
-            places, overloaded, ..
-        } = self;
-        overloaded.clear();
+        let places = &self.places;
+        self.overloaded.clear();
         surface.for_each_thread(|ends, rest_length, along_warp| {
             let [a, b] = ends.map_inline(|end| places[end as usize]);
             let stretch = a.distance(b) / rest_length - 1.0;
             let borne = strength.strain(ends, along_warp);
             if stretch > borne {
-                overloaded.push((stretch / borne, ends, along_warp));
+                (self.overloaded).push((stretch / borne, ends, along_warp));
             }
         });
     }
@@ -188,16 +186,11 @@ impl TearSearch {
         is_tip: &[bool],
         tensions: impl FnOnce(&mut dyn FnMut([u32; 2], f32)),
     ) {
-        let Self {
-            places,
-            overloaded,
-            stress,
-        } = self;
-        stress.find(tensions, surface, places);
-        overloaded.retain_mut(|(load, ends, along_warp)| {
+        self.stress.find(tensions, surface, &self.places);
+        (self.overloaded).retain_mut(|(load, ends, along_warp)| {
             let borne = strength.load(*along_warp);
             let is_at_tip = ends.iter().any(|end| is_tip[*end as usize]);
-            let of_patch = stress.along(*ends, is_at_tip, places) / borne;
+            let of_patch = self.stress.along(*ends, is_at_tip, &self.places) / borne;
             *load = load.min(of_patch);
             // False for NaN.
             of_patch > 1.0
@@ -260,18 +253,17 @@ fn split(
 fn across(particle: u32, direction: Vec3, surface: &Surface) -> Vec<[u32; 2]> {
     let rest = surface.rest_positions();
     let at = rest[particle as usize];
-    let fan: Vec<([u32; 3], bool)> = (surface.faces_around(particle))
-        .map(|face| {
-            let sum: Vec3 = face.iter().map(|corner| rest[*corner as usize] - at).sum();
-            (face, sum.dot(direction) > 0.0)
-        })
-        .collect();
+    let is_beyond = |face: [u32; 3]| {
+        let sum: Vec3 = face.iter().map(|corner| rest[*corner as usize] - at).sum();
+        sum.dot(direction) > 0.0
+    };
+    let faces = surface.faces_around(particle);
+    let fan: Vec<([u32; 3], bool)> = faces.map(|face| (face, is_beyond(face))).collect();
     let mut edges = Vec::new();
     for (index, (face, side)) in fan.iter().enumerate() {
         for (other, other_side) in &fan[..index] {
-            let shared = face
-                .iter()
-                .find(|corner| **corner != particle && other.contains(corner));
+            let mut others = face.iter().filter(|corner| **corner != particle);
+            let shared = others.find(|corner| other.contains(corner));
             if let Some(end) = shared
                 && side != other_side
             {

@@ -38,8 +38,8 @@ impl NodeBounds {
             self.volumes = Volumes::of(volume);
         }
         self.size = tree.size();
-        tree.shape()
-            .rebuild(&mut self.volumes, rule, particles, stretch);
+        let shape = tree.shape();
+        shape.rebuild(&mut self.volumes, rule, particles, stretch);
         Ok(())
     }
 
@@ -71,39 +71,7 @@ impl NodeBounds {
             BoundRule::Paper => 0.0,
             BoundRule::Refit | BoundRule::RestShape => particle_radius,
         };
-        tree.shape()
-            .volume(&self.volumes, particles, node)
-            .inflated(radius)
-    }
-
-    /// Checks that each node's volume contains its particles' centres and, under `Refit`, its children's volumes. Under
-    /// `Paper` this often fails.
-    ///
-    /// # Errors
-    /// A message that names the node at fault.
-    pub fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
-        let volume_of = |node| tree.shape().volume(&self.volumes, particles, node);
-        for node in 0..tree.len() as u32 {
-            let volume = volume_of(node);
-            for particle in tree.particles_of(node) {
-                let position = particles.position_at(particle as usize);
-                if !volume.holds(position) {
-                    return Err(format!(
-                        "node {node}, {volume:?}, does not hold particle {particle} at {position}"
-                    ));
-                }
-            }
-            if self.rule() == BoundRule::Refit {
-                for &child in tree.node(node).children() {
-                    let child_volume = volume_of(child);
-                    if !volume.holds_volume(&child_volume) {
-                        return Err(format!(
-                            "node {node}, {volume:?}, does not hold its child {child}, {child_volume:?}"
-                        ));
-                    }
-                }
-            }
-        }
-        Ok(())
+        let volume = tree.shape().volume(&self.volumes, particles, node);
+        volume.inflated(radius)
     }
 }

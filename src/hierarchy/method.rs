@@ -93,10 +93,8 @@ impl SearchMethod {
             let rest_shape = Self::Tree(BoundingVolume::Sphere, BoundRule::RestShape);
             (rest_shape, SearchReason::FewColliders)
         } else {
-            (
-                Self::Tree(BoundingVolume::Aabb, BoundRule::Refit),
-                SearchReason::ManyColliders,
-            )
+            let refit = Self::Tree(BoundingVolume::Aabb, BoundRule::Refit);
+            (refit, SearchReason::ManyColliders)
         }
     }
 }

@@ -119,7 +119,6 @@
 //! saves here; they are for comparison and study. [`SearchMethod::Auto`] chooses by these figures.
 
 mod bounds;
-mod brute;
 mod method;
 mod probe;
 mod query;
@@ -134,8 +133,6 @@ mod volume;
 
 pub use bounds::NodeBounds;
 #[doc(hidden)]
-pub use brute::brute_force;
-#[doc(hidden)]
 pub use method::SEARCH_FROM;
 pub use method::{SearchMethod, SearchReason};
 #[doc(hidden)]
@@ -143,5 +140,7 @@ pub use probe::{Core, Probe};
 pub use query::{NodeState, TopDownQuery};
 pub(crate) use ray::RayQuery;
 pub use rule::BoundRule;
+#[doc(hidden)]
+pub use scan::brute_force;
 pub use tree::{Node, QuadTree};
 pub use volume::{BoundingVolume, KDop, NodeVolume, Obb};

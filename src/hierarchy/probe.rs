@@ -120,13 +120,9 @@ impl Core {
         let reach = reach * ROUNDING + self.size() * 1.0e-5;
         let mut any = false;
         match *self {
-            Self::Point(centre) => {
+            Self::Point(c) => {
                 for l in 0..LANES {
-                    let (x, y, z) = (
-                        view[X + l] - centre.x,
-                        view[Y + l] - centre.y,
-                        view[Z + l] - centre.z,
-                    );
+                    let (x, y, z) = (view[X + l] - c.x, view[Y + l] - c.y, view[Z + l] - c.z);
                     any |= x * x + y * y + z * z <= reach * reach;
                 }
             }
@@ -144,14 +140,10 @@ impl Core {
                 }
             }
             Self::Cuboid { pose, half_size } => {
-                let centre = Vec3::from(pose.translation);
+                let c = Vec3::from(pose.translation);
                 let axes = Mat3::from_quat(pose.rotation);
                 for l in 0..LANES {
-                    let (x, y, z) = (
-                        view[X + l] - centre.x,
-                        view[Y + l] - centre.y,
-                        view[Z + l] - centre.z,
-                    );
+                    let (x, y, z) = (view[X + l] - c.x, view[Y + l] - c.y, view[Z + l] - c.z);
                     let outside = |axis: Vec3, half: f32| {
                         let beyond = (x * axis.x + y * axis.y + z * axis.z).abs() - half;
                         if beyond > 0.0 { beyond } else { 0.0 }
@@ -164,13 +156,9 @@ impl Core {
                     any |= x * x + y * y + z * z <= reach * reach;
                 }
             }
-            Self::HalfSpace { point, normal } => {
+            Self::HalfSpace { point: p, normal } => {
                 for l in 0..LANES {
-                    let (x, y, z) = (
-                        view[X + l] - point.x,
-                        view[Y + l] - point.y,
-                        view[Z + l] - point.z,
-                    );
+                    let (x, y, z) = (view[X + l] - p.x, view[Y + l] - p.y, view[Z + l] - p.z);
                     let slack = (x.abs() + y.abs() + z.abs()) * 1.0e-6;
                     any |= x * normal.x + y * normal.y + z * normal.z <= reach + slack;
                 }

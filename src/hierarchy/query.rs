@@ -63,7 +63,8 @@ impl TopDownQuery {
     /// Tests every particle instead, eight at a time: for cloths too small for a tree.
     pub fn scan(&mut self, particles: &ClothParticles, probe: &Probe) -> Range<usize> {
         let first = self.found.candidates.len();
-        scan(particles, probe, &mut self.found.candidates);
+        let (blocks, layout) = (particles.blocks(), particles.layout());
+        scan(blocks, layout, probe, &mut self.found.candidates);
         self.found.leaf_tests += particles.len();
         first..self.found.candidates.len()
     }
@@ -103,16 +104,10 @@ impl TopDownQuery {
     /// Number of tested nodes of `level`, once for each search, and number of those that touched.
     pub fn level(&self, tree: &QuadTree, level: usize) -> (usize, usize) {
         let nodes = tree.levels().get(level).cloned().unwrap_or_default();
-        let on_it = || {
-            self.found
-                .visits
-                .iter()
-                .filter(|(node, _)| nodes.contains(node))
-        };
-        (
-            on_it().count(),
-            on_it().filter(|(_, touching)| *touching).count(),
-        )
+        let visits = self.found.visits.iter();
+        let on_it = visits.filter(|(node, _)| nodes.contains(node));
+        let touching = on_it.clone().filter(|(_, touching)| *touching);
+        (on_it.count(), touching.count())
     }
 
     /// Number of nodes tested since [`clear`](Self::clear), including leaves, once for each search.

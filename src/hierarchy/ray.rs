@@ -67,9 +67,8 @@ impl RayQuery {
         let around = BoundingSphere::new(around.center, around.radius() + reach);
         let ends = chord(&around, ray, max_distance)?;
         let spheres = (BoundingVolume::Sphere, BoundRule::RestShape);
-        self.bounds
-            .rebuild(spheres, tree, particles, stretch)
-            .ok()?;
+        let rebuilt = (self.bounds).rebuild(spheres, tree, particles, stretch);
+        rebuilt.ok()?;
         self.query.clear();
         self.query.silence();
         let probe = Probe {
@@ -215,11 +214,8 @@ fn hit(corners: [DVec3; 3]) -> Option<([f32; 3], f32)> {
         return None;
     }
     let weights = areas.map_inline(|area| area / sum);
-    let distance: f64 = weights
-        .iter()
-        .zip(&corners)
-        .map(|(weight, of)| weight * of.z)
-        .sum();
+    let each = weights.iter().zip(&corners);
+    let distance: f64 = each.map(|(weight, of)| weight * of.z).sum();
     let weights = weights.map_inline(|weight| weight as f32);
     (distance >= 0.0).then_some((weights, distance as f32))
 }

@@ -1,4 +1,4 @@
-//! The search without a tree: all particles, eight at a time.
+//! The search without a tree: all particles, eight at a time, or one by one in f64.
 
 use multiversion::multiversion;
 
@@ -6,12 +6,8 @@ use super::probe::Probe;
 use crate::cloth::{Block, ClothParticles, LANES, Layout};
 
 /// Appends the indices of all particles that `probe` meets.
-pub(super) fn scan(particles: &ClothParticles, probe: &Probe, found: &mut Vec<u32>) {
-    scan_blocks(particles.blocks(), particles.layout(), probe, found);
-}
-
 #[multiversion(targets("x86_64+avx+avx2"), dispatcher = "direct")]
-fn scan_blocks(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
+pub(super) fn scan(blocks: &[Block], layout: Layout, probe: &Probe, found: &mut Vec<u32>) {
     let reach = probe.reach() as f32;
     for (index, block) in blocks.iter().enumerate() {
         if probe.core.may_reach_any(block.view(), reach) {
@@ -31,4 +27,11 @@ fn meet(block: &Block, index: usize, layout: Layout, probe: &Probe, found: &mut 
             found.push(particle);
         }
     }
+}
+
+/// Returns the indices of all particles that `probe` meets, tested one by one in f64.
+pub fn brute_force(particles: &ClothParticles, probe: &Probe) -> Vec<u32> {
+    let places = particles.positions().enumerate();
+    let met = places.filter(|(_, place)| probe.meets(*place));
+    met.map(|(index, _)| index as u32).collect()
 }

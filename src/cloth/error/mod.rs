@@ -1,11 +1,7 @@
 //! Errors of cloths and colliders: those of all modules, joined. Errors of upper floors are here, since none may import from those.
 
 mod alike;
-mod bounds;
-mod self_collision;
-mod shape;
-mod target;
-mod transform;
+mod kinds;
 
 use bevy::reflect::Reflect;
 use thiserror::Error;
@@ -20,11 +16,7 @@ use super::{
     surface::{GrainError, MeshError, TearError},
 };
 
-pub use bounds::BoundsError;
-pub use self_collision::SelfCollisionError;
-pub use shape::ShapeError;
-pub use target::TargetError;
-pub use transform::TransformError;
+pub use kinds::{BoundsError, SelfCollisionError, ShapeError, TargetError, TransformError};
 
 /// The reason why a cloth or a collider is not simulated, with the value at fault.
 ///

@@ -210,8 +210,8 @@ impl Woven {
             ratio: if is_alike {
                 1.0
             } else {
-                (weft / warp).powf(0.25) as f32
-            },
+                (weft / warp).powf(0.25)
+            } as f32,
         }
     }
 }

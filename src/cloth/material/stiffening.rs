@@ -2,7 +2,7 @@
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-use crate::cloth::quantity::QuantityError;
+use crate::cloth::quantity::{Allowed, QuantityError};
 
 /// A knit gives easily until its loops are straight, and its yarns take over. Beyond a strain, cloth that stiffens is stiffer against
 /// stretch and shear, by a factor. Force over strain is a line with a knee:
@@ -46,19 +46,10 @@ impl ClothStiffening {
     /// # Errors
     /// [`QuantityError`] for the first that is not.
     pub(super) fn validate(&self) -> Result<(), QuantityError> {
-        QuantityError::check(
-            self.strain,
-            |strain| strain > 0.0 && strain <= 10.0,
-            "strain beyond which the cloth stiffens",
-            "positive, and at most 10",
-        )?;
-        QuantityError::check(
-            self.factor,
-            |factor| factor >= 1.0 && factor.is_finite(),
-            "factor by which the cloth stiffens",
-            "at least 1, and finite",
-        )?;
-        Ok(())
+        let strain = Allowed(|of| of > 0.0 && of <= 10.0, "positive, and at most 10");
+        strain.check("strain beyond which the cloth stiffens", [self.strain])?;
+        let factor = Allowed(|of| of >= 1.0 && of.is_finite(), "at least 1, and finite");
+        factor.check("factor by which the cloth stiffens", [self.factor])
     }
 
     /// The strain under a load that would strain a cloth by `linear` if it did not stiffen.

@@ -33,10 +33,8 @@ impl DensityFactors {
         if of_particles.is_empty() {
             return Self::default();
         }
-        let weighted = of_particles.iter().enumerate();
-        let sum: f64 = weighted
-            .map(|(index, factor)| f64::from(factor * surface.area_of(index)))
-            .sum();
+        let area = |(index, factor)| f64::from(factor * surface.area_of(index));
+        let sum: f64 = of_particles.iter().copied().enumerate().map(area).sum();
         Self {
             mean: (sum / f64::from(surface.area())) as f32,
             least: of_particles.iter().copied().fold(f32::INFINITY, f32::min),
@@ -61,12 +59,9 @@ impl DensityFactors {
             [least.min(mass), most.max(mass)]
         });
         for mass in ends {
-            QuantityError::check(
-                mass,
-                |mass| (1.0e-15..1.0e15).contains(&mass),
-                "the mass of a particle (kg)",
-                "from 10⁻¹⁵ to 10¹⁵",
-            )?;
+            let range = |mass: f32| (1.0e-15..1.0e15).contains(&mass);
+            let name = "the mass of a particle (kg)";
+            QuantityError::check(mass, range, name, "from 10⁻¹⁵ to 10¹⁵")?;
         }
         Ok(())
     }

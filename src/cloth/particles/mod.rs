@@ -1,6 +1,5 @@
 //! The particles of a cloth, as a structure of arrays.
 
-mod body;
 mod density;
 mod error;
 mod extent;
@@ -86,12 +85,9 @@ impl ClothParticles {
     /// [`QuantityError`] for a particle mass outside 10⁻¹⁵ to 10¹⁵ kg.
     pub fn at_rest(surface: &Surface, material: &ClothMaterial) -> Result<Self, QuantityError> {
         let mut particles = Self::of_layout(surface.layout());
-        for (&position, slot) in surface
-            .rest_positions()
-            .iter()
-            .zip(particles.layout.slots())
-        {
-            particles.blocks[slot.block].set_position(slot.lane, position);
+        let places = surface.rest_positions().iter();
+        for (position, slot) in places.zip(particles.layout.slots()) {
+            particles.blocks[slot.block].set_position(slot.lane, *position);
         }
         let factors = DensityFactors::default();
         particles.assign_masses(surface, material, &factors, &Pins::none())?;
@@ -231,8 +227,8 @@ impl ClothParticles {
 
     /// Position − previous position (m), over one sub-step.
     pub fn displacement(&self, id: impl Into<ParticleId>) -> Option<Vec3> {
-        self.slot(id)
-            .map(|Slot { block, lane }| self.blocks[block].displacement(lane))
+        let slot = self.slot(id)?;
+        Some(self.blocks[slot.block].displacement(slot.lane))
     }
 
     /// Velocity (m/s): the displacement divided by its sub-step. If the previous displacement is known, half of the
@@ -247,8 +243,8 @@ impl ClothParticles {
 
     /// Inverse mass (1/kg); 0 for a pinned particle.
     pub fn inverse_mass(&self, id: impl Into<ParticleId>) -> Option<f32> {
-        self.slot(id)
-            .map(|Slot { block, lane }| self.blocks[block].inverse_mass(lane))
+        let slot = self.slot(id)?;
+        Some(self.blocks[slot.block].inverse_mass(slot.lane))
     }
 
     /// Whether any particle is pinned.
@@ -260,8 +256,7 @@ impl ClothParticles {
 
     /// Whether the particle is pinned: only its pin moves it.
     pub fn is_pinned(&self, id: impl Into<ParticleId>) -> Option<bool> {
-        self.inverse_mass(id)
-            .map(|inverse_mass| inverse_mass == 0.0)
+        Some(self.inverse_mass(id)? == 0.0)
     }
 
     /// Moves a particle (m) and keeps its velocity: the jump itself adds none. A pinned particle stays at the new
@@ -360,12 +355,8 @@ impl ClothParticles {
                 + block.displacement(slot.lane).length_squared();
             validity::is_valid(squares, block.inverse_mass(slot.lane))
         };
-        let Some((index, slot)) = self
-            .valid_layout()
-            .slots()
-            .enumerate()
-            .find(|(_, slot)| !valid(*slot))
-        else {
+        let mut slots = self.valid_layout().slots().enumerate();
+        let Some((index, slot)) = slots.find(|(_, slot)| !valid(*slot)) else {
             return Ok(());
         };
         let block = &self.blocks[slot.block];

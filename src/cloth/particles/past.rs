@@ -198,9 +198,9 @@ impl Past {
 
     /// Copies `other` into the existing allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        self.blocks.clone_from(&other.blocks);
-        (self.is_known, self.wait) = (other.is_known, other.wait);
-        (self.has_moved, self.watch) = (other.has_moved, other.watch);
+        let mut blocks = std::mem::take(&mut self.blocks);
+        blocks.clone_from(&other.blocks);
+        *self = Self { blocks, ..*other };
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{ClothParticles, DEFAULT_SUBSTEP};
 use crate::cloth::{
-    lanes::{Block, Lanes, Layout, W},
+    lanes::{LANES, Layout, W},
     limits::MAX_PARTICLES,
 };
 
@@ -21,11 +21,8 @@ impl ClothParticles {
     /// The memory layout, or an empty one if a scene file or an inspector has written an invalid one. The particles are
     /// then rebuilt.
     pub(super) fn valid_layout(&self) -> Layout {
-        if self.layout.is_valid() && self.blocks.len() == self.layout.blocks() {
-            self.layout
-        } else {
-            Layout::default()
-        }
+        let is_valid = self.layout.is_valid() && self.blocks.len() == self.layout.blocks();
+        is_valid.then_some(self.layout).unwrap_or_default()
     }
 
     /// Replaces an invalid sub-step with the default.
@@ -41,13 +38,9 @@ impl ClothParticles {
 
     /// Whether both pin the same particles, and give the others the same masses.
     pub(crate) fn weigh_as(&self, other: &Self) -> bool {
-        let masses = |block: &Block| -> Lanes {
-            let view = block.view();
-            std::array::from_fn(|lane| view[W + lane])
-        };
-        self.layout == other.layout
-            && self.blocks.len() == other.blocks.len()
-            && (self.blocks.iter().zip(&other.blocks))
-                .all(|(own, other)| masses(own) == masses(other))
+        fn masses(of: &ClothParticles) -> impl Iterator<Item = &[f32]> {
+            of.blocks.iter().map(|block| &block.view()[W..W + LANES])
+        }
+        self.layout == other.layout && masses(self).eq(masses(other))
     }
 }

@@ -318,6 +318,21 @@ impl ClothParticles {
     pub(crate) fn end_past(&mut self) {
         self.past.end(&mut self.blocks);
     }
+
+    /// Gives all particles the velocities of one rigid body that moves `by` this motion in `seconds`, or zero if
+    /// `seconds` is zero. Positions do not change.
+    pub(crate) fn set_body_motion(&mut self, by: Isometry3d, seconds: f32) {
+        let share = self.substep / seconds;
+        let part = if seconds > 0.0 { share } else { 0.0 };
+        for slot in self.layout.slots() {
+            let block = &mut self.blocks[slot.block];
+            let position = block.position(slot.lane);
+            let is_free = block.inverse_mass(slot.lane) > 0.0;
+            let moved = (by * position - position) * part;
+            block.set_displacement(slot.lane, if is_free { moved } else { Vec3::ZERO });
+        }
+        self.past.forget(0);
+    }
 }
 
 /// A pseudorandom number from −1 to 1 that depends only on `index` (Steele, Lea and Flood 2014, `SplitMix`).

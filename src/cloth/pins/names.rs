@@ -1,5 +1,7 @@
 //! The particles that each pin names on a surface.
 
+use bevy::math::Vec3;
+
 use super::{Corner, Pin, PinError};
 use crate::cloth::{
     grid::ClothGrid,
@@ -25,10 +27,8 @@ impl Pin {
                 if *channel < 4 && attributes.iter().any(|each| each.name() == name) {
                     return self.finds_something(surface);
                 }
-                return Err(PinError::NoSuchAttribute {
-                    pin: pin(),
-                    attributes: VertexAttribute::names(attributes),
-                });
+                let (pin, attributes) = (pin(), VertexAttribute::names(attributes));
+                return Err(PinError::NoSuchAttribute { pin, attributes });
             }
             (_, None) => return Err(PinError::NeedsGrid { pin: pin() }),
             (Self::Cell(row, column), Some(grid)) => *row < grid.rows() && *column < grid.columns(),
@@ -38,10 +38,8 @@ impl Pin {
         if is_inside {
             return Ok(());
         }
-        Err(PinError::OutOfRange {
-            pin: pin(),
-            cloth: surface.to_string(),
-        })
+        let (pin, cloth) = (pin(), surface.to_string());
+        Err(PinError::OutOfRange { pin, cloth })
     }
 
     /// Whether it is a predicate that holds for no particle of `surface`, which is no error.
@@ -56,9 +54,8 @@ impl Pin {
         if found {
             return Ok(());
         }
-        Err(PinError::FindsNothing {
-            pin: format!("{self:?}"),
-        })
+        let pin = format!("{self:?}");
+        Err(PinError::FindsNothing { pin })
     }
 
     /// Calls `pinned` with the index of each particle of `surface` that the pin names, possibly more than once. The pin
@@ -79,29 +76,27 @@ impl Pin {
     }
 
     fn for_each_whole(&self, surface: &Surface, mut pinned: impl FnMut(usize)) {
+        let scale = surface.scale();
         let places = || {
-            surface
-                .whole_positions()
-                .map(|place| place / surface.scale())
+            let unscaled = surface.whole_positions().map(|place| place / scale);
+            unscaled.enumerate()
         };
         match self {
             Self::Index(index) => pinned(*index),
-            Self::Vertex(vertex) => surface
-                .particle_of_vertex(*vertex)
-                .into_iter()
-                .for_each(pinned),
+            Self::Vertex(vertex) => {
+                let particle = surface.particle_of_vertex(*vertex);
+                particle.into_iter().for_each(pinned);
+            }
             Self::Near { point, radius } => {
                 // Up to rounding of the positions.
-                let near = |place: bevy::math::Vec3| {
-                    place.distance(*point) <= radius + 1.0e-6 * place.length()
-                };
-                let found = places().enumerate().filter(|(_, place)| near(*place));
-                found.for_each(|(index, _)| pinned(index));
+                let reach = |place: Vec3| radius + 1.0e-6 * place.length();
+                let is_near = |(_, place): &(_, Vec3)| place.distance(*point) <= reach(*place);
+                places()
+                    .filter(is_near)
+                    .for_each(|(index, _)| pinned(index));
             }
             Self::AtRest(predicate) => {
-                let found = places()
-                    .enumerate()
-                    .filter(|(_, place)| predicate.holds(*place));
+                let found = places().filter(|(_, place)| predicate.holds(*place));
                 found.for_each(|(index, _)| pinned(index));
             }
             Self::Attribute {
@@ -111,20 +106,16 @@ impl Pin {
             } => {
                 let attribute = surface.attributes().iter().find(|each| each.name() == name);
                 let values = attribute.map_or(&[][..], VertexAttribute::values);
-                let is_above =
-                    |value: &[f32; 4]| value.get(*channel).is_some_and(|value| value > above);
-                let found = values
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, value)| is_above(value));
-                found.for_each(|(index, _)| pinned(index));
+                for (index, value) in values.iter().enumerate() {
+                    if value.get(*channel).is_some_and(|value| value > above) {
+                        pinned(index);
+                    }
+                }
             }
             _ => {
                 if let Some(grid) = surface.rest_grid() {
-                    self.for_each_cell(
-                        grid,
-                        |row, column| pinned(grid.index(row, column) as usize),
-                    );
+                    let mut cell = |row, column| pinned(grid.index(row, column) as usize);
+                    self.for_each_cell(grid, &mut cell);
                 }
             }
         }
@@ -145,10 +136,12 @@ impl Pin {
             Self::Corner(Corner::TopRight) => cell(0, last_column),
             Self::Corner(Corner::BottomLeft) => cell(last_row, 0),
             Self::Corner(Corner::BottomRight) => cell(last_row, last_column),
-            Self::Where(predicate) => grid
-                .cells()
-                .filter(|&(row, column)| predicate.holds(row, column))
-                .for_each(|(row, column)| cell(row, column)),
+            Self::Where(predicate) => {
+                let found = grid
+                    .cells()
+                    .filter(|(row, column)| predicate.holds(*row, *column));
+                found.for_each(|(row, column)| cell(row, column));
+            }
             Self::Index(_)
             | Self::Vertex(_)
             | Self::Near { .. }

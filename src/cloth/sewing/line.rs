@@ -93,11 +93,9 @@ impl Line {
             (false, false) => (first, 1.0),
         };
         let long = end - self.at[first];
-        let weight = if second != first && long > 0.0 {
-            ((at - self.at[first]) / long).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let part = ((at - self.at[first]) / long).clamp(0.0, 1.0);
+        let is_side = second != first && long > 0.0;
+        let weight = if is_side { part } else { 0.0 };
         let weight = match weight {
             near if near < AT_END => 0.0,
             far if far > 1.0 - AT_END => 1.0,

@@ -18,11 +18,8 @@ fn weights([a, b, c]: [Vec3; 3], point: Vec3) -> [f32; 3] {
     }
     let along = |p: Vec3, q: Vec3| {
         let long = (q - p).length_squared();
-        let at = if long > 0.0 {
-            ((point - p).dot(q - p) / long).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let at = (point - p).dot(q - p) / long;
+        let at = if long > 0.0 { at.clamp(0.0, 1.0) } else { 0.0 };
         (p.lerp(q, at).distance_squared(point), at)
     };
     let [(of_ab, ab), (of_bc, bc), (of_ca, ca)] = [along(a, b), along(b, c), along(c, a)];

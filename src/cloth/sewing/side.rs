@@ -31,9 +31,8 @@ impl SewnSide {
             pin.for_each(surface, |particle| named.push(particle as u32));
         }
         if named.is_empty() {
-            return Err(PinError::FindsNothing {
-                pin: format!("{pins:?}"),
-            });
+            let pin = format!("{pins:?}");
+            return Err(PinError::FindsNothing { pin });
         }
         let is_single = |pin: &Pin| {
             matches!(
@@ -131,8 +130,6 @@ fn lines(surface: &Surface, selected: &[u32], edges: &[[u32; 2]]) -> Vec<Line> {
         let particles = places.into_iter().map(|place| selected[place]).collect();
         Line::new(particles, is_ring, surface.rest_positions())
     };
-    edge_lines(&mut beside, |place| vertex_of[place])
-        .into_iter()
-        .map(line)
-        .collect()
+    let lines = edge_lines(&mut beside, |place| vertex_of[place]);
+    lines.into_iter().map(line).collect()
 }

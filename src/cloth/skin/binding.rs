@@ -89,11 +89,8 @@ impl Skinning {
             }
         }
         surface.share_with_copies(&mut particles);
-        let particles: Vec<Bound> = particles
-            .into_iter()
-            .map(Option::unwrap_or_default)
-            .collect();
-        Ok(Self::of(particles))
+        let particles = particles.into_iter().map(Option::unwrap_or_default);
+        Ok(Self::of(particles.collect()))
     }
 
     /// Binds vertices, by their indices, positions (m), joints and weights. They have no normals.
@@ -170,10 +167,7 @@ impl Skinning {
 impl Bound {
     /// The weighted sum over its joints.
     fn blended(&self, joints: &[Affine3A], of: impl Fn(&Affine3A) -> Vec3A) -> Vec3A {
-        let JointWeights {
-            joints: indices,
-            weights,
-        } = self.skin;
+        let (indices, weights) = (self.skin.joints, self.skin.weights);
         let mut sum = Vec3A::ZERO;
         for (joint, weight) in indices.into_iter().zip(weights) {
             if weight > 0.0 {
@@ -188,15 +182,12 @@ impl Bound {
 fn normalized(vertex: usize, skin: &JointWeights) -> Result<JointWeights, SkinError> {
     let sum: f32 = skin.weights.iter().sum();
     if !(sum.is_finite() && skin.weights.iter().all(|weight| *weight >= 0.0)) {
-        return Err(SkinError::Weights {
-            vertex,
-            weights: skin.weights,
-        });
+        let weights = skin.weights;
+        return Err(SkinError::Weights { vertex, weights });
     }
-    let weights = if sum > 0.0 {
-        skin.weights.map(|weight| weight / sum)
-    } else {
-        [1.0, 0.0, 0.0, 0.0]
+    let weights = match sum > 0.0 {
+        true => skin.weights.map(|weight| weight / sum),
+        false => [1.0, 0.0, 0.0, 0.0],
     };
     Ok(JointWeights { weights, ..*skin })
 }

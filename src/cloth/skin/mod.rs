@@ -10,7 +10,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::quantity::QuantityError;
+use super::quantity::{Allowed, QuantityError};
 
 pub use binding::SkinError;
 pub(crate) use binding::Skinning;
@@ -160,11 +160,9 @@ impl ClothSkin {
     /// # Errors
     /// [`QuantityError`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        let share = |v: f32| (0.0..=1.0).contains(&v);
-        QuantityError::check(self.blend, share, "the skin's blend", "from 0 to 1")?;
-        let positive = |v: f32| v > 0.0;
-        let name = "the skin's teleport distance (m)";
-        QuantityError::check(self.teleport_distance, positive, name, "positive")?;
+        Allowed::SHARE.check("the skin's blend", [self.blend])?;
+        let positive = Allowed(|v| v > 0.0, "positive");
+        positive.check("the skin's teleport distance (m)", [self.teleport_distance])?;
         if let Some(backstop) = &self.backstop {
             QuantityError::positive(backstop.radius, "the backstop's radius (m)")?;
         }
@@ -173,10 +171,9 @@ impl ClothSkin {
 
     /// The blended max distance (m) of a particle, on a cloth of a diagonal (m).
     pub(crate) fn blended(&self, max_distance: f32, diagonal: f32) -> f32 {
-        if self.blend == 1.0 {
-            max_distance
-        } else {
-            self.blend * max_distance.min(2.0 * diagonal)
+        match self.blend {
+            1.0 => max_distance,
+            blend => blend * max_distance.min(2.0 * diagonal),
         }
     }
 }

@@ -145,10 +145,10 @@ impl ClothPaint {
                     if value == 0.0 { 0.0 } else { value * scale }
                 })
                 .collect(),
-            Self::AtRest(function) => surface
-                .whole_positions()
-                .map(|place| function.of(place / surface.scale()))
-                .collect(),
+            Self::AtRest(function) => {
+                let value = |place| function.of(place / surface.scale());
+                surface.whole_positions().map(value).collect()
+            }
             Self::Vertices(values) => of_vertices(surface, values)?,
         };
         for value in &values {

@@ -88,13 +88,12 @@ impl SpringList {
         particles.sort_unstable();
         particles.dedup();
         let number = |particle: u32| particles.partition_point(|other| *other < particle) as u32;
-        let springs: Vec<Spring> = chosen
-            .iter()
-            .map(|at| Spring {
-                ends: self.springs[*at].ends.map(number),
-                ..self.springs[*at]
-            })
-            .collect();
+        let renamed = |at: &usize| {
+            let spring = self.springs[*at];
+            let ends = spring.ends.map(number);
+            Spring { ends, ..spring }
+        };
+        let springs: Vec<Spring> = chosen.iter().map(renamed).collect();
         let mut list = Self {
             stiffening: self.stiffening,
             ..Self::default()

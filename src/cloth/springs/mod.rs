@@ -75,9 +75,8 @@ impl Compliances {
             _ => self.shear,
         };
         let narrowed = if narrowed { 2.0 } else { 1.0 };
-        compliance
-            .is_finite()
-            .then_some(compliance * grid.step_length((down, across)) / width * narrowed)
+        let of_strip = compliance * grid.step_length((down, across)) / width * narrowed;
+        compliance.is_finite().then_some(of_strip)
     }
 }
 
@@ -253,16 +252,13 @@ impl Springs {
         match &self.0 {
             SpringStorage::Grid(grid, compliances) => {
                 let (columns, rows) = (grid.columns() as usize, grid.rows() as usize);
-                let along = [
-                    columns.saturating_sub(1) * rows,
-                    columns * rows.saturating_sub(1),
-                ];
+                let (wide, high) = (columns.saturating_sub(1), rows.saturating_sub(1));
+                let along = [wide * rows, columns * high];
                 let there = |compliance: f32, count: usize| {
                     if compliance.is_finite() { count } else { 0 }
                 };
                 let [across, down] = [0, 1].map(|at| there(compliances.structural[at], along[at]));
-                let cells = columns.saturating_sub(1) * rows.saturating_sub(1);
-                across + down + there(compliances.shear, 2 * cells)
+                across + down + there(compliances.shear, 2 * wide * high)
             }
             SpringStorage::List(list) => list.springs.len(),
         }
@@ -318,11 +314,8 @@ fn compliances(surface: &Surface, material: &ClothMaterial) -> impl Fn(&Link) ->
     move |link| match link.kind {
         SpringKind::Structural => {
             let [a, b] = link.ends.map(|end| surface.origin_of(end));
-            if a.abs_diff(b) == 1 {
-                along_rows
-            } else {
-                along_columns
-            }
+            let is_in_row = a.abs_diff(b) == 1;
+            if is_in_row { along_rows } else { along_columns }
         }
         SpringKind::Shear | SpringKind::Bend => across,
     }

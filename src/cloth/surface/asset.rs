@@ -3,10 +3,7 @@
 use bevy::{
     asset::RenderAssetUsages,
     math::{Vec2, Vec3},
-    mesh::{
-        Indices, Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology,
-        VertexAttributeValues,
-    },
+    mesh::{Mesh, MeshAccessError, MeshVertexAttribute, PrimitiveTopology, VertexAttributeValues},
 };
 
 use super::triangles::{JointWeights, MeshError, TriangleMesh, VertexAttribute};
@@ -33,17 +30,9 @@ impl TriangleMesh {
         let positions = positions_of_asset(mesh)?;
         let read = |attribute| attribute_of(mesh, attribute);
         let triangles = triangles(mesh, positions.len())?;
-        let vectors = |values: Option<&VertexAttributeValues>| match values {
-            Some(VertexAttributeValues::Float32x3(values)) => {
-                values.iter().copied().map(Vec3::from).collect()
-            }
-            _ => Vec::new(),
-        };
-        let uvs = match read(Mesh::ATTRIBUTE_UV_0)? {
-            Some(VertexAttributeValues::Float32x2(values)) => {
-                values.iter().copied().map(Vec2::from).collect()
-            }
-            _ => Vec::new(),
+        let uvs: &[[f32; 2]] = match read(Mesh::ATTRIBUTE_UV_0)? {
+            Some(VertexAttributeValues::Float32x2(values)) => values,
+            _ => &[],
         };
         let attributes = mesh.attributes().filter_map(|(attribute, values)| {
             let is_other = OTHERS.iter().any(|other| other.id == attribute.id);
@@ -53,8 +42,8 @@ impl TriangleMesh {
         Ok(Self {
             positions,
             triangles,
-            normals: vectors(read(Mesh::ATTRIBUTE_NORMAL)?),
-            uvs,
+            normals: vectors(read(Mesh::ATTRIBUTE_NORMAL)?).unwrap_or_default(),
+            uvs: uvs.iter().copied().map(Vec2::from).collect(),
             attributes: attributes.collect(),
         })
     }
@@ -84,12 +73,13 @@ pub(crate) fn positions_of_asset(mesh: &Mesh) -> Result<Vec<Vec3>, MeshError> {
     if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
         return Err(MeshError::NotReadable);
     }
-    match attribute_of(mesh, Mesh::ATTRIBUTE_POSITION)? {
-        Some(VertexAttributeValues::Float32x3(positions)) => {
-            Ok(positions.iter().copied().map(Vec3::from).collect())
-        }
-        _ => Err(MeshError::WithoutPositions),
-    }
+    vectors(attribute_of(mesh, Mesh::ATTRIBUTE_POSITION)?).ok_or(MeshError::WithoutPositions)
+}
+
+/// The values of an attribute of three numbers each.
+fn vectors(values: Option<&VertexAttributeValues>) -> Option<Vec<Vec3>> {
+    let values = values?.as_float3()?.iter();
+    Some(values.copied().map(Vec3::from).collect())
 }
 
 /// The joints and weights of each vertex of a skinned mesh; `None` for a mesh without joint indices and weights.
@@ -124,8 +114,7 @@ pub(crate) fn indices_of_asset(mesh: &Mesh, vertices: usize) -> Result<Vec<u32>,
         Err(_) => return Err(MeshError::NotReadable),
     };
     Ok(match indices {
-        Some(Indices::U16(indices)) => indices.iter().map(|index| u32::from(*index)).collect(),
-        Some(Indices::U32(indices)) => indices.clone(),
+        Some(indices) => indices.iter().map(|index| index as u32).collect(),
         None => (0..vertices as u32).collect(),
     })
 }
@@ -136,13 +125,9 @@ fn triangles(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, MeshError> {
     match mesh.primitive_topology() {
         PrimitiveTopology::TriangleList => {
             let (triangles, left) = indices.as_chunks::<3>();
-            if left.is_empty() {
-                Ok(triangles.to_vec())
-            } else {
-                Err(MeshError::IndexCount {
-                    indices: indices.len(),
-                })
-            }
+            let count = indices.len();
+            let error = MeshError::IndexCount { indices: count };
+            left.is_empty().then(|| triangles.to_vec()).ok_or(error)
         }
         PrimitiveTopology::TriangleStrip => {
             let triangles = indices.array_windows::<3>().enumerate();
@@ -165,21 +150,17 @@ fn numbers(values: &VertexAttributeValues) -> Option<Vec<[f32; 4]>> {
             |value: &[f32; N]| std::array::from_fn(|at| value.get(at).copied().unwrap_or(0.0));
         values.iter().map(fill).collect()
     }
+    fn shares<T: Copy + Into<f32>>(values: &[[T; 4]], most: f32) -> Vec<[f32; 4]> {
+        let share = |value: &[T; 4]| value.map(|channel| channel.into() / most);
+        values.iter().map(share).collect()
+    }
     Some(match values {
-        VertexAttributeValues::Float32(values) => {
-            values.iter().map(|value| [*value, 0.0, 0.0, 0.0]).collect()
-        }
+        VertexAttributeValues::Float32(values) => filled(values.as_chunks::<1>().0),
         VertexAttributeValues::Float32x2(values) => filled(values),
         VertexAttributeValues::Float32x3(values) => filled(values),
         VertexAttributeValues::Float32x4(values) => filled(values),
-        VertexAttributeValues::Unorm8x4(values) => values
-            .iter()
-            .map(|value| value.map(|channel| f32::from(channel) / 255.0))
-            .collect(),
-        VertexAttributeValues::Unorm16x4(values) => values
-            .iter()
-            .map(|value| value.map(|channel| f32::from(channel) / 65535.0))
-            .collect(),
+        VertexAttributeValues::Unorm8x4(values) => shares(values, 255.0),
+        VertexAttributeValues::Unorm16x4(values) => shares(values, 65535.0),
         _ => return None,
     })
 }

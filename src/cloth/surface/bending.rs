@@ -20,12 +20,13 @@ impl Surface {
             None if self.as_grid().is_some() => {
                 Triangulation::of(self.triangles(), &self.incidence().sides)
             }
-            None => {
-                let places = self.rest.iter().map(|place| place.as_dvec3());
-                let places: Vec<DVec3> = places.collect();
-                turned(self.triangles(), &places, &self.grain)
-            }
+            None => turned(self.triangles(), &self.places_in_f64(), &self.grain),
         })
+    }
+
+    /// Its places at rest (m), in f64.
+    pub(crate) fn places_in_f64(&self) -> Vec<DVec3> {
+        self.rest.iter().map(|place| place.as_dvec3()).collect()
     }
 
     /// The direction of the warp in such a triangle; `None` without a grain.

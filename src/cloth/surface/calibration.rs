@@ -51,38 +51,27 @@ pub(super) fn calibrate(
     let frames: Vec<Frame> = normals.iter().map(|normal| Frame::new(*normal)).collect();
     let square = |link: &Link| f64::from(link.rest_length).powi(2);
     // Stiffness × length² of a patch's springs, before and after: the area that they represent (m²).
-    let areas: Vec<f64> = links
-        .iter()
-        .map(|link| square(link) / f64::from(link.slenderness))
-        .collect();
+    let area = |link: &Link| square(link) / f64::from(link.slenderness);
+    let areas: Vec<f64> = links.iter().map(area).collect();
     let softness: Vec<f64> = (0..links.len()).map(softness).collect();
     let corrected = areas.iter().zip(&softness);
     let mut corrected: Vec<f64> = corrected.map(|(area, soft)| area / soft.powi(3)).collect();
     let turns = turns(&graph, &frames);
     for _ in 0..PASSES {
         let star = |particle: usize| {
+            if is_border[particle] {
+                return None;
+            }
             let mut star = Springs::NONE;
             for &(other, at) in graph.of(particle as u32) {
                 let span = rest[other as usize] - rest[particle];
                 let (at, length) = (at as usize, f64::from(span.length()));
-                star.add(
-                    frames[particle].direction(span),
-                    length,
-                    corrected[at],
-                    areas[at],
-                );
+                let direction = frames[particle].direction(span);
+                star.add(direction, length, corrected[at], areas[at]);
             }
             star.relaxed()
         };
-        let stars: Vec<Option<Star>> = (0..rest.len())
-            .map(|particle| {
-                if is_border[particle] {
-                    None
-                } else {
-                    star(particle)
-                }
-            })
-            .collect();
+        let stars: Vec<Option<Star>> = (0..rest.len()).map(star).collect();
         let compliance = |particle: usize| {
             let mut sum = stars[particle].unwrap_or(Star::NONE);
             for (near, turn) in graph.of(particle as u32).iter().zip(&turns[particle]) {

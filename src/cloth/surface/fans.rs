@@ -48,9 +48,8 @@ impl Fans {
 
     /// The number of a corner from `start` on, which is added if it is new.
     fn corner(&mut self, start: usize, slot: Slot) -> u32 {
-        let known = self.corners[start..]
-            .iter()
-            .position(|&known| known == slot);
+        let mut known = self.corners[start..].iter();
+        let known = known.position(|&known| known == slot);
         if known.is_none() {
             self.corners.push(slot);
         }

@@ -17,10 +17,8 @@ pub(crate) struct Flat {
 impl Flat {
     /// Vector from one particle to another in the plane (m).
     pub fn between(&self, a: usize, b: usize) -> [f32; 2] {
-        (self.places[a] - self.places[b])
-            .abs()
-            .to_array()
-            .map(|of| of as f32)
+        let apart = (self.places[a] - self.places[b]).abs();
+        apart.as_vec2().to_array()
     }
 
     /// The plane of particles at `rest` (m) with faces of a total `area` (m²), if they are flat and convex. There may
@@ -56,16 +54,10 @@ impl Flat {
                 away.abs() <= 10.0 * FLAT * size
             })
         };
-        let mut borders = places
-            .iter()
-            .zip(is_border)
-            .filter(|(_, is_border)| **is_border);
-        borders
-            .all(|(place, _)| is_on_hull(*place))
-            .then_some(Self {
-                places,
-                has_chains: false,
-            })
+        let mut borders = places.iter().zip(is_border);
+        let has_chains = false;
+        let is_convex = borders.all(|(place, is_border)| !is_border || is_on_hull(*place));
+        is_convex.then_some(Self { places, has_chains })
     }
 }
 
@@ -94,11 +86,8 @@ fn hull(places: &[DVec2]) -> Vec<DVec2> {
 /// Area of a closed polygon (m²).
 fn hull_area(hull: &[DVec2]) -> f64 {
     let origin = hull.first().copied().unwrap_or_default();
-    let pairs = hull.windows(2);
-    pairs
-        .map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin))
-        .sum::<f64>()
-        / 2.0
+    let area = |pair: &[DVec2]| (pair[0] - origin).perp_dot(pair[1] - origin);
+    hull.windows(2).map(area).sum::<f64>() / 2.0
 }
 
 #[cfg(test)]

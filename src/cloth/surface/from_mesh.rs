@@ -2,19 +2,25 @@
 
 use std::sync::OnceLock;
 
-use bevy::math::Vec3;
+use bevy::{math::Vec3, platform::collections::HashSet};
 
 use super::{
     Derived, Extent, Spacing, Surface,
     calibration::calibrate,
     faces::{Faces, first_corner},
     graph::Graph,
+    normals::add_face_normals,
     orientation::orient,
     springs::{Side, face_area, has_area, links, sides, sides_of},
     triangles::{MeshError, TriangleMesh, VertexAttribute},
     weld::same_places,
 };
-use crate::cloth::{limits::FARTHEST, quantity::QuantityError, spring::SpringKind};
+use crate::cloth::{
+    arrays::{chosen, sorted},
+    limits::FARTHEST,
+    quantity::QuantityError,
+    spring::SpringKind,
+};
 
 /// The most particles that a cloth from a mesh may have: more could not run in real time.
 pub const MAX_MESH_PARTICLES: usize = 1 << 18;
@@ -50,27 +56,19 @@ impl Surface {
 
 fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), MeshError> {
     QuantityError::not_negative(weld, "weld distance (m)")?;
-    let vertices = mesh.positions.len();
+    let particles = mesh.positions.len();
     // A particle usually has a few vertices; far too many are rejected before welding.
-    if vertices > 8 * MAX_MESH_PARTICLES {
-        return Err(MeshError::TooLarge {
-            particles: vertices,
-        });
+    if particles > 8 * MAX_MESH_PARTICLES {
+        return Err(MeshError::TooLarge { particles });
     }
     // Not by the largest element, which ignores NaN.
-    let is_measurable = |place: &Vec3| (*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
-    if let Some(vertex) = mesh
-        .positions
-        .iter()
-        .position(|place| !is_measurable(place))
-    {
-        return Err(MeshError::VertexNotFinite {
-            vertex,
-            position: mesh.positions[vertex],
-        });
+    let is_far = |place: &Vec3| !(*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
+    if let Some(vertex) = mesh.positions.iter().position(is_far) {
+        let position = mesh.positions[vertex];
+        return Err(MeshError::VertexNotFinite { vertex, position });
     }
-    let is_beyond =
-        |triangle: &[u32; 3]| triangle.iter().any(|corner| *corner as usize >= vertices);
+    let vertices = mesh.positions.len();
+    let is_beyond = |corners: &[u32; 3]| corners.iter().any(|at| *at as usize >= vertices);
     if let Some(triangle) = mesh.triangles.iter().position(is_beyond) {
         return Err(MeshError::TriangleOutOfRange {
             triangle,
@@ -95,10 +93,7 @@ struct Welded {
 impl Welded {
     fn new(mesh: &TriangleMesh, weld: f32, places: &[Vec3]) -> Self {
         let (first, particle_of) = same_places(&mesh.positions, weld);
-        let rest: Vec<Vec3> = first
-            .iter()
-            .map(|&vertex| places[vertex as usize])
-            .collect();
+        let rest = chosen(places, &first);
         let mut normals = Vec::new();
         if mesh.normals.len() == mesh.positions.len() {
             normals.resize(rest.len(), Vec3::ZERO);
@@ -109,7 +104,8 @@ impl Welded {
         let corners = |triangle: &[u32; 3]| triangle.map(|corner| particle_of[corner as usize]);
         let mut faces: Vec<[u32; 3]> = mesh.triangles.iter().map(corners).collect();
         faces.retain(|[a, b, c]| a != b && b != c && c != a);
-        drop_duplicates(&mut faces);
+        let mut known = HashSet::<[u32; 3]>::default();
+        faces.retain(|face| known.insert(sorted(*face)));
         Self {
             rest,
             particle_of,
@@ -121,12 +117,8 @@ impl Welded {
 
     /// Checks that there are no more particles than a cloth may have.
     fn check_count(&self) -> Result<(), MeshError> {
-        let mut is_corner = vec![false; self.rest.len()];
-        self.faces
-            .iter()
-            .flatten()
-            .for_each(|corner| is_corner[*corner as usize] = true);
-        let particles = is_corner.into_iter().filter(|is_corner| *is_corner).count();
+        let counts = count_faces(&self.faces, self.rest.len());
+        let particles = counts.iter().filter(|count| **count > 0).count();
         if particles > MAX_MESH_PARTICLES {
             return Err(MeshError::TooLarge { particles });
         }
@@ -173,22 +165,16 @@ impl Welded {
         edges.sort_unstable();
         edges.dedup();
         let graph = Graph::new(self.rest.len(), edges.iter().map(|edge| (*edge, 1.0)));
-        let order: Vec<u32> = graph
-            .order()
-            .into_iter()
-            .filter(|particle| !graph.of(*particle).is_empty())
-            .collect();
+        let mut order = graph.order();
+        order.retain(|particle| !graph.of(*particle).is_empty());
         self.pieces = graph.pieces();
         let mut number = vec![NO_PARTICLE; self.rest.len()];
         for (index, &particle) in order.iter().enumerate() {
             number[particle as usize] = index as u32;
         }
-        self.rest = order.iter().map(|&old| self.rest[old as usize]).collect();
+        self.rest = chosen(&self.rest, &order);
         if !self.normals.is_empty() {
-            self.normals = order
-                .iter()
-                .map(|&old| self.normals[old as usize])
-                .collect();
+            self.normals = chosen(&self.normals, &order);
         }
         for face in &mut self.faces {
             *face = face.map(|corner| number[corner as usize]);
@@ -205,30 +191,28 @@ impl Welded {
         let sides = sides_of(&self.faces);
         orient(&mut self.faces, &sides, &unscaled, &self.normals);
         let (areas, area) = self.areas();
-        let pieces = self.pieces;
         let particles = self.rest.len();
         let faces = Faces::by_first_corner(&self.faces, particles);
-        let normals = normals(faces.all(), &self.rest);
+        let mut normals = vec![Vec3::ZERO; particles];
+        add_face_normals(faces.all(), &self.rest, &mut normals);
+        for normal in &mut normals {
+            *normal = normal.normalize_or(Vec3::Y);
+        }
         let mut links = links(faces.all(), &sides, &self.rest);
         let is_border = borders(&sides, particles);
         calibrate(&mut links, &self.rest, &normals, &is_border, |_| 1.0);
-        let mut lengths: Vec<f32> = links
+        let edges = links
             .iter()
-            .filter(|link| link.kind == SpringKind::Structural)
-            .map(|link| link.rest_length)
-            .collect();
+            .filter(|link| link.kind == SpringKind::Structural);
+        let mut lengths: Vec<f32> = edges.map(|link| link.rest_length).collect();
         lengths.sort_unstable_by(f32::total_cmp);
         let spacing = Spacing {
             shortest: lengths[0],
             typical: lengths[lengths.len() / 2],
             longest: lengths[lengths.len() - 1],
         };
-        let [low, high] = self
-            .rest
-            .iter()
-            .fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
-                [low.min(*place), high.max(*place)]
-            });
+        let low = self.rest.iter().copied().fold(Vec3::MAX, Vec3::min);
+        let high = self.rest.iter().copied().fold(Vec3::MIN, Vec3::max);
         let diagonal = low.distance(high);
         let has_uvs = mesh.uvs.len() == self.particle_of.len();
         let uvs = if has_uvs {
@@ -238,15 +222,14 @@ impl Welded {
         };
         let larger =
             |first: [f32; 4], other: [f32; 4]| std::array::from_fn(|at| first[at].max(other[at]));
-        let attributes = mesh
-            .attributes
-            .iter()
-            .filter(|attribute| attribute.values().len() == self.particle_of.len())
-            .map(|attribute| {
-                let values = merged(attribute.values(), &self.particle_of, particles, larger);
-                VertexAttribute::new(attribute.name(), values)
-            })
-            .collect();
+        let is_whole = |of: &&VertexAttribute| of.values().len() == self.particle_of.len();
+        let attribute = |of: &VertexAttribute| {
+            let values = merged(of.values(), &self.particle_of, particles, larger);
+            VertexAttribute::new(of.name(), values)
+        };
+        let attributes = mesh.attributes.iter().filter(is_whole);
+        let attributes = attributes.map(attribute).collect();
+        let most = count_faces(faces.all(), particles).into_iter().max();
         Surface {
             normals,
             rest: self.rest,
@@ -263,8 +246,8 @@ impl Welded {
                 particles_across: (area / diagonal / spacing.typical).max(1.0) as usize,
                 face_reach: spacing.longest,
                 longest_spring: spacing.longest,
-                max_faces: max_faces(faces.all(), particles),
-                pieces,
+                max_faces: most.unwrap_or(0),
+                pieces: self.pieces,
             },
             derived: Derived {
                 uvs: OnceLock::from(uvs),
@@ -289,67 +272,27 @@ fn merged<T: Copy + Default>(
             *known = Some(known.map_or(*value, |known| merge(known, *value)));
         }
     }
-    of_particle
-        .into_iter()
-        .map(Option::unwrap_or_default)
-        .collect()
-}
-
-/// Each particle's normal, of length 1: the mean of its faces' normals, weighted by area.
-fn normals(faces: &[[u32; 3]], rest: &[Vec3]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; rest.len()];
-    for face in faces {
-        let [a, b, c] = face.map(|corner| rest[corner as usize]);
-        let normal = (b - a).cross(c - a);
-        face.iter()
-            .for_each(|corner| normals[*corner as usize] += normal);
-    }
-    normals
-        .into_iter()
-        .map(|normal| normal.normalize_or(Vec3::Y))
-        .collect()
+    let values = of_particle.into_iter();
+    values.map(Option::unwrap_or_default).collect()
 }
 
 /// Marks particles at an edge that does not have two faces.
 fn borders(sides: &[Side], particles: usize) -> Vec<bool> {
     let mut is_border = vec![false; particles];
-    for faces in sides
-        .chunk_by(|a, b| a.ends == b.ends)
-        .filter(|faces| faces.len() != 2)
-    {
-        faces[0]
-            .ends
-            .iter()
-            .for_each(|end| is_border[*end as usize] = true);
+    let edges = sides.chunk_by(|a, b| a.ends == b.ends);
+    for faces in edges.filter(|faces| faces.len() != 2) {
+        for end in faces[0].ends {
+            is_border[end as usize] = true;
+        }
     }
     is_border
 }
 
-/// Drops all but the first of several faces between the same three particles.
-fn drop_duplicates(faces: &mut Vec<[u32; 3]>) {
-    let sorted = |face: &[u32; 3]| {
-        let mut corners = *face;
-        corners.sort_unstable();
-        corners
-    };
-    let mut known: Vec<([u32; 3], usize)> = faces.iter().map(sorted).zip(0..).collect();
-    known.sort_unstable();
-    let mut is_first = vec![true; faces.len()];
-    for same in known.chunk_by(|a, b| a.0 == b.0) {
-        same[1..]
-            .iter()
-            .for_each(|(_, index)| is_first[*index] = false);
-    }
-    let mut is_first = is_first.into_iter();
-    faces.retain(|_| is_first.next().unwrap_or(false));
-}
-
-/// The largest number of faces at one particle.
-fn max_faces(faces: &[[u32; 3]], particles: usize) -> usize {
+/// Number of faces at each particle.
+fn count_faces(faces: &[[u32; 3]], particles: usize) -> Vec<usize> {
     let mut counts = vec![0; particles];
-    faces
-        .iter()
-        .flatten()
-        .for_each(|corner| counts[*corner as usize] += 1);
-    counts.into_iter().max().unwrap_or(0)
+    for corner in faces.iter().flatten() {
+        counts[*corner as usize] += 1;
+    }
+    counts
 }

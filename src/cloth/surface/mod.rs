@@ -55,6 +55,8 @@ pub(crate) use faces::Faces;
 pub(crate) use fans::{Fan, Fans};
 pub(crate) use flat::Flat;
 pub(crate) use graph::Graph;
+#[cfg(feature = "mesh")]
+pub(crate) use normals::add_face_normals;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
 pub(crate) use torn::GridStencil;
@@ -294,9 +296,8 @@ impl Surface {
 
     /// Where the corners of its faces are, by their owners.
     pub(crate) fn fans(&self) -> &Fans {
-        self.derived
-            .fans
-            .get_or_init(|| Fans::new(self.faces(), self.layout()))
+        let make = || Fans::new(self.faces(), self.layout());
+        self.derived.fans.get_or_init(make)
     }
 
     /// Where its particles are in memory: rows of a grid, torn or not, or one row.
@@ -384,12 +385,10 @@ impl fmt::Display for Surface {
         match &self.grid {
             Some(grid) if grid.rows() == 1 => write!(f, "a rope of {} particles", grid.columns()),
             Some(grid) => write!(f, "{} columns × {} rows", grid.columns(), grid.rows()),
-            None => write!(
-                f,
-                "{} particles of {} vertices",
-                self.len(),
-                self.vertices()
-            ),
+            None => {
+                let (particles, vertices) = (self.len(), self.vertices());
+                write!(f, "{particles} particles of {vertices} vertices")
+            }
         }
     }
 }

@@ -12,15 +12,24 @@ impl Surface {
     pub fn normals_at(&self, positions: &[Vec3], normals: &mut Vec<Vec3>) {
         normals.clear();
         normals.resize(positions.len(), Vec3::ZERO);
-        for face in self.triangles() {
-            let [a, b, c] = face.map_inline(|corner| positions[corner as usize]);
-            // Its length is twice the area: larger faces weigh more.
-            let normal = (b - a).cross(c - a);
-            face.iter()
-                .for_each(|corner| normals[*corner as usize] += normal);
-        }
+        add_face_normals(self.triangles(), positions, normals);
         for (particle, normal) in normals.iter_mut().enumerate() {
             *normal = normal.normalize_or(self.normal_of(particle));
+        }
+    }
+}
+
+/// Adds the normal of each face to those of its corners. Its length is twice the area: larger faces weigh more.
+pub(crate) fn add_face_normals<'a>(
+    faces: impl IntoIterator<Item = &'a [u32; 3]>,
+    places: &[Vec3],
+    normals: &mut [Vec3],
+) {
+    for face in faces {
+        let [a, b, c] = face.map_inline(|corner| places[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        for corner in face {
+            normals[*corner as usize] += normal;
         }
     }
 }

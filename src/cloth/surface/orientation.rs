@@ -62,10 +62,8 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
         }
         let agreement = |&index: &usize| {
             let [a, b, c] = faces[index].map(|corner| rest[corner as usize]);
-            let sum: Vec3 = faces[index]
-                .iter()
-                .map(|corner| normals[*corner as usize])
-                .sum();
+            let around = faces[index].map(|corner| normals[corner as usize]);
+            let sum: Vec3 = around.iter().sum();
             (b - a).cross(c - a).dot(sum)
         };
         if piece.iter().map(agreement).sum::<f32>() < 0.0 {

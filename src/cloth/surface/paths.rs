@@ -35,18 +35,15 @@ struct Reached {
 impl<'a> ShortestPaths<'a> {
     pub fn new(graph: &'a Graph) -> Self {
         let edges = (0..graph.len() as u32).flat_map(|particle| graph.of(particle));
-        let longest = edges
-            .map(|(_, length)| f64::from(*length))
-            .fold(0.0, f64::max);
+        let longest = edges.map(|(_, length)| *length).fold(0.0, f32::max);
         Self {
             graph,
             reached: vec![Reached::default(); graph.len()],
             wanted: vec![0; graph.len()],
             search: 0,
-            density: if longest > 0.0 {
-                (BUCKETS - 2) as f64 / longest
-            } else {
-                0.0
+            density: match longest {
+                0.0 => 0.0,
+                longest => (BUCKETS - 2) as f64 / f64::from(longest),
             },
             buckets: vec![Vec::new(); BUCKETS],
             passed: Vec::new(),

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::cloth::spring::SpringKind;
+use crate::cloth::{arrays::sorted, spring::SpringKind};
 
 /// Lower limit of an area, as a fraction of the squared edge length.
 const SMALLEST_AREA: f32 = 1.0e-6;
@@ -58,8 +58,8 @@ pub(super) fn for_each_link(
     for sides in sides.chunk_by(|a, b| a.ends == b.ends) {
         visit(SpringKind::Structural, sides[0].ends, sides);
         for_each_pair(sides, rest, |one, other| {
-            let (a, b) = (one.opposite, other.opposite);
-            visit(SpringKind::Bend, [a.min(b), a.max(b)], &[*one, *other]);
+            let ends = sorted([one.opposite, other.opposite]);
+            visit(SpringKind::Bend, ends, &[*one, *other]);
         });
     }
 }
@@ -106,7 +106,7 @@ pub(super) fn sides_of(faces: &[[u32; 3]]) -> Vec<Side> {
 
 /// Both particles of each side of a face, the smaller index first.
 pub(super) fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+    [[a, b], [b, c], [c, a]].map(sorted)
 }
 
 /// Whether a face at rest has an area beyond rounding errors.

@@ -138,10 +138,9 @@ impl VertexAttribute {
     /// The names of attributes, for a message.
     pub(crate) fn names(attributes: &[Self]) -> String {
         let names: Vec<&str> = attributes.iter().map(Self::name).collect();
-        if names.is_empty() {
-            "none".to_string()
-        } else {
-            names.join(", ")
+        match &names[..] {
+            [] => "none".to_string(),
+            names => names.join(", "),
         }
     }
 

@@ -28,11 +28,8 @@ pub(crate) fn same_places(positions: &[Vec3], weld: f32) -> (Vec<u32>, Vec<u32>)
         let (low, high) = (position - weld, position + weld);
         let ends = [low, high];
         for corner in 0..8 {
-            let near = Vec3::new(
-                ends[corner & 1].x,
-                ends[(corner >> 1) & 1].y,
-                ends[corner >> 2].z,
-            );
+            let end = |axis: usize| ends[(corner >> axis) & 1][axis];
+            let near = Vec3::new(end(0), end(1), end(2));
             let of_cell =
                 std::iter::successors(cells.get(&cell(near)).copied(), |at| before[*at as usize]);
             for known in of_cell.filter(is_same) {

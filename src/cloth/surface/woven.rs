@@ -14,7 +14,7 @@ use super::{
     springs::{Link, for_each_link, sides_of},
     triangles::TriangleMesh,
 };
-use crate::cloth::spring::SpringKind;
+use crate::cloth::{arrays::sorted, spring::SpringKind};
 
 /// A triangle whose area in the texture is less than this fraction of its squared size there has no direction.
 const FOLDED: f32 = 1.0e-6;
@@ -69,10 +69,9 @@ impl Surface {
             .map(|face| {
                 let normal = self.face_normal(*face);
                 let within = axis.reject_from_normalized(normal);
-                if within.length() > PERPENDICULAR {
-                    within.normalize()
-                } else {
-                    normal.any_orthonormal_vector()
+                match within.length() > PERPENDICULAR {
+                    true => within.normalize(),
+                    false => normal.any_orthonormal_vector(),
                 }
             })
             .collect()
@@ -88,10 +87,6 @@ impl Surface {
         if mesh.uvs.len() != vertices || mesh.positions.len() != vertices {
             return Err(GrainError::NeedsUvs);
         }
-        let sorted = |mut corners: [u32; 3]| {
-            corners.sort_unstable();
-            corners
-        };
         // A face is the first of the triangles between its particles.
         let particle = |vertex: u32| Some(self.particle_of_vertex(vertex as usize)? as u32);
         let mut triangles = Vec::with_capacity(mesh.triangles.len());
@@ -189,12 +184,9 @@ impl Surface {
                 across.push(link);
             }
         });
-        let normals: Vec<Vec3> = (0..self.len())
-            .map(|particle| self.normal_of(particle))
-            .collect();
-        calibrate(&mut along, &self.rest, &normals, &self.is_border, |at| {
-            softness[at]
-        });
+        let normals: Vec<Vec3> = (0..self.len()).map(|at| self.normal_of(at)).collect();
+        let softness = |at: usize| softness[at];
+        calibrate(&mut along, &self.rest, &normals, &self.is_border, softness);
         across.append(&mut along);
         Some(across)
     }

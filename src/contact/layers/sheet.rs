@@ -86,10 +86,7 @@ impl Sheet {
     /// # Panics
     /// If the tree belongs to another surface.
     pub fn new(surface: &Arc<Surface>, tree: &QuadTree) -> Self {
-        assert!(
-            tree.validate(surface.len()).is_ok(),
-            "the tree belongs to another surface"
-        );
+        assert!(tree.is_of(surface), "the tree belongs to another surface");
         let closest = surface.as_grid().map_or(0.0, |grid| {
             let [across, down] = grid.spacing().to_array();
             match grid.rope_radius() {

@@ -9,7 +9,7 @@ use proptest::{
 
 use super::states::{CoreKind, State, states};
 use crate::hierarchy::{
-    bounds::NodeBounds, brute::brute_force, query::TopDownQuery, rule::BoundRule,
+    bounds::NodeBounds, query::TopDownQuery, rule::BoundRule, scan::brute_force,
     volume::BoundingVolume,
 };
 

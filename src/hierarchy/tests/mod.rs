@@ -1,5 +1,6 @@
 //! The query against brute force on random states, for every volume, rule and shape.
 
+pub(super) mod holds;
 mod misses;
 mod rays;
 mod states;
@@ -8,7 +9,42 @@ mod surfaces;
 use proptest::{prelude::*, strategy::ValueTree, test_runner::TestRunner};
 
 use super::*;
+use crate::cloth::ClothParticles;
+use holds::Holds;
 use states::{Scene, State, states};
+
+impl NodeBounds {
+    /// Checks that each node's volume contains its particles' centres and, under `Refit`, its children's volumes. Under
+    /// `Paper` this often fails.
+    ///
+    /// # Errors
+    /// A message that names the node at fault.
+    fn validate(&self, tree: &QuadTree, particles: &ClothParticles) -> Result<(), String> {
+        let volume_of = |node| tree.shape().volume(&self.volumes, particles, node);
+        for node in 0..tree.len() as u32 {
+            let volume = volume_of(node);
+            for particle in tree.particles_of(node) {
+                let position = particles.position_at(particle as usize);
+                if !volume.holds(position.as_dvec3(), 0.0) {
+                    return Err(format!(
+                        "node {node}, {volume:?}, does not hold particle {particle} at {position}"
+                    ));
+                }
+            }
+            if self.rule() == BoundRule::Refit {
+                for &child in tree.node(node).children() {
+                    let child_volume = volume_of(child);
+                    if !volume.holds_volume(&child_volume) {
+                        return Err(format!(
+                            "node {node}, {volume:?}, does not hold its child {child}, {child_volume:?}"
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
 
 /// Each volume by each rule that misses nothing.
 const COMPLETE: [(BoundingVolume, BoundRule); 8] = [

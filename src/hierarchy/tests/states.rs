@@ -194,7 +194,7 @@ impl State {
             let positions: Vec<Vec3> = particles.positions().collect();
             let masses: Vec<f32> = particles.inverse_masses().collect();
             particles = ClothParticles::new(&positions, &masses).expect("valid particles");
-            QuadTree::of_network(&rest, &springs.to_vec()).expect("valid springs")
+            QuadTree::of_network(&rest, &springs.to_vec())
         } else {
             QuadTree::of_grid(&grid, springs.has(SpringKind::Shear))
         };

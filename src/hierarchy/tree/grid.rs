@@ -159,10 +159,8 @@ fn rebuild_paper<V: Volume>(bounds: &mut Bounds<V>, tree: &GridTree, particles: 
                 };
                 let (left, right) = (columns.span.start, columns.span.end - 1);
                 let (top, bottom) = (rows.span.start, rows.span.end - 1);
-                let sum = corner(top, left)
-                    + corner(top, right)
-                    + corner(bottom, left)
-                    + corner(bottom, right);
+                let upper = corner(top, left) + corner(top, right);
+                let sum = upper + corner(bottom, left) + corner(bottom, right);
                 bounds.nodes.push(V::around(sum / 4.0, radius));
             }
         }

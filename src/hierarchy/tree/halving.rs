@@ -72,10 +72,9 @@ impl GridTree {
         let strip = layout.strip;
         let strips = layout.columns.div_ceil(strip);
         let rows = halved(layout.rows, layout.rows, 1);
-        let full = if strips > 1 {
-            strips * strip
-        } else {
-            layout.columns
+        let full = match strips {
+            ..=1 => layout.columns,
+            _ => strips * strip,
         };
         let columns = halved(full, layout.columns, strip);
         let depth = rows.len().max(columns.len());
@@ -102,14 +101,9 @@ impl GridTree {
                 part.block = part.middle * strip;
             }
             let width = columns[0].full_end;
-            let parts_in_strip = if width > strip {
-                0
-            } else {
-                columns
-                    .iter()
-                    .take_while(|part| part.span.start < strip)
-                    .count() as u32
-            };
+            let in_strip = columns.iter().take_while(|part| part.span.start < strip);
+            let count = in_strip.count() as u32;
+            let parts_in_strip = if width > strip { 0 } else { count };
             for (index, part) in columns.iter_mut().enumerate() {
                 (part.block, part.lane) = (part.middle % strip, part.middle / strip);
                 part.in_strip = (index as u32).checked_rem(parts_in_strip).unwrap_or(0);
@@ -144,11 +138,8 @@ impl GridTree {
     /// The parts of a node of `level`.
     pub fn parts(&self, level: usize, node: u32) -> (u32, u32) {
         let level = &self.levels[level];
-        let columns = level.columns.len() as u32;
-        (
-            (node - level.first) / columns,
-            (node - level.first) % columns,
-        )
+        let (index, columns) = (node - level.first, level.columns.len() as u32);
+        (index / columns, index % columns)
     }
 }
 
@@ -185,10 +176,8 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
             let (start, end) = (parent.span.start, parent.full_end);
             let half = start + (end - start).div_ceil(unit).div_ceil(2) * unit;
             let halves = [start..half.min(end), half.min(end)..end];
-            let there = halves
-                .into_iter()
-                .filter(|half| half.start < count && !half.is_empty());
-            below.extend(there.map(part));
+            let exists = |half: &Range<u32>| half.start < count && !half.is_empty();
+            below.extend(halves.into_iter().filter(exists).map(part));
             parent.children = first..below.len() as u32;
         }
         levels.push(below);

@@ -17,10 +17,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::{
-    ClothError, ClothGrid, ClothParticles, Graph, Layout, ParticleError, Spring, SpringError,
-    SpringKind, Surface,
-};
+use crate::cloth::{ClothGrid, ClothParticles, Surface};
 use network::NetworkTree;
 use shape::Tree;
 use stored::growth;
@@ -54,11 +51,11 @@ impl QuadTree {
     pub fn of_surface(surface: &Surface, diagonals: bool) -> Self {
         match surface.as_grid() {
             Some(grid) => Self::of_grid(grid, diagonals),
-            None => Self(Arc::new(NetworkTree::new(
-                surface.rest_positions(),
-                surface.layout(),
-                surface.graph(),
-            ))),
+            None => {
+                let (layout, graph) = (surface.layout(), surface.graph());
+                let tree = NetworkTree::new(surface.rest_positions(), layout, graph);
+                Self(Arc::new(tree))
+            }
         }
     }
 
@@ -66,45 +63,6 @@ impl QuadTree {
     /// the diagonals, which shortens distances along the springs.
     pub fn of_grid(grid: &ClothGrid, diagonals: bool) -> Self {
         Self(Arc::new(GridTree::new(grid, diagonals)))
-    }
-
-    /// Builds a tree over any particles: `rest` are their positions at rest (m), and `springs` join them. Bend springs
-    /// are not paths. Takes O(n log² n) time.
-    ///
-    /// # Errors
-    /// [`SpringError::Invalid`] for the first spring that does not join two particles, or whose rest length is not
-    /// from 10⁻⁹ to 10¹² m. The stretch of a spring without a length is undefined.
-    /// [`ParticleError::NotFinite`] for a position that is not finite.
-    pub fn of_network(rest: &[Vec3], springs: &[Spring]) -> Result<Self, ClothError> {
-        if let Some(index) = rest.iter().position(|position| !position.is_finite()) {
-            return Err(ClothError::Particle(ParticleError::NotFinite {
-                index,
-                position: rest[index],
-                displacement: Vec3::ZERO,
-                inverse_mass: 0.0,
-            }));
-        }
-        let is_valid = |spring: &Spring| {
-            spring.ends.iter().all(|&end| (end as usize) < rest.len())
-                && (1.0e-9..=1.0e12).contains(&spring.rest_length)
-        };
-        if let Some(index) = springs.iter().position(|spring| !is_valid(spring)) {
-            return Err(ClothError::Spring(SpringError::Invalid {
-                index,
-                spring: springs[index],
-                particles: rest.len(),
-            }));
-        }
-        // The stretch of bend springs is not measured.
-        let paths = springs
-            .iter()
-            .filter(|spring| spring.kind != SpringKind::Bend);
-        let graph = Graph::new(
-            rest.len(),
-            paths.map(|spring| (spring.ends, spring.rest_length)),
-        );
-        let layout = Layout::new(rest.len() as u32, 1);
-        Ok(Self(Arc::new(NetworkTree::new(rest, layout, &graph))))
     }
 
     /// Number of nodes.
@@ -163,22 +121,6 @@ impl QuadTree {
         })
     }
 
-    /// Indices of a node's particles.
-    pub fn particles_of(&self, node: u32) -> Vec<u32> {
-        let level = self.level_of(node);
-        let mut nodes = vec![node];
-        for _ in level + 1..self.levels().len() {
-            nodes = nodes
-                .into_iter()
-                .flat_map(|node| self.node(node).children().to_vec())
-                .collect();
-        }
-        nodes
-            .into_iter()
-            .map(|leaf| self.node(leaf).middle)
-            .collect()
-    }
-
     /// Numbers of nodes and columns, which identify the volumes of a tree.
     pub(super) fn size(&self) -> [usize; 2] {
         [self.len(), self.0.layout().columns as usize]
@@ -189,69 +131,21 @@ impl QuadTree {
         self.0.layout() == particles.layout()
     }
 
-    pub(super) fn shape(&self) -> &dyn Tree {
-        &*self.0
+    /// Whether it may be a surface's tree: its particles have the same layout.
+    pub(crate) fn is_of(&self, surface: &Surface) -> bool {
+        self.0.layout() == surface.layout()
     }
 
-    /// Checks that each node's children divide its patch, and that each of `particles` particles is in exactly one
-    /// leaf.
-    ///
-    /// # Errors
-    /// A message that names the node at fault.
-    pub fn validate(&self, particles: usize) -> Result<(), String> {
-        let last = self.levels().len().saturating_sub(1);
-        let mut parent_of = vec![None; self.len()];
-        let mut leaf_of = vec![None; particles];
-        for (level, nodes) in self.levels().iter().enumerate() {
-            for index in nodes.clone() {
-                let node = self.node(index);
-                if node.is_leaf() != (level == last) {
-                    return Err(format!(
-                        "node {index} of level {level} of {last} is a leaf too early"
-                    ));
-                }
-                if level > 0 && parent_of[index as usize].is_none() {
-                    return Err(format!("node {index} has no parent"));
-                }
-                for &child in node.children() {
-                    let is_below = self.levels()[level + 1].contains(&child);
-                    if !is_below || parent_of[child as usize].replace(index).is_some() {
-                        return Err(format!(
-                            "node {child} is not a child of node {index} alone, one level below"
-                        ));
-                    }
-                }
-                if node.is_leaf() {
-                    match leaf_of.get_mut(node.middle as usize) {
-                        Some(leaf @ None) => *leaf = Some(index),
-                        _ => {
-                            return Err(format!(
-                                "leaf {index} is not the one of particle {}",
-                                node.middle
-                            ));
-                        }
-                    }
-                }
-                if !self.particles_of(index).contains(&node.middle) {
-                    return Err(format!("the middle of node {index} is not in it"));
-                }
-            }
-        }
-        match leaf_of.iter().position(Option::is_none) {
-            None => Ok(()),
-            Some(particle) => Err(format!("particle {particle} is in no leaf")),
-        }
+    pub(super) fn shape(&self) -> &dyn Tree {
+        &*self.0
     }
 }
 
 /// The sphere around both. Pieces may be as far apart as numbers go, or lost, so no length overflows: `f64`.
 fn merged(around: &BoundingSphere, centre: Vec3, radius: f32) -> BoundingSphere {
     let (from, to) = (around.center.as_dvec3(), centre.as_dvec3());
-    let [one, other, apart] = [
-        f64::from(around.radius()),
-        f64::from(radius),
-        from.distance(to),
-    ];
+    let [one, other] = [around.radius(), radius].map(f64::from);
+    let apart = from.distance(to);
     if one >= apart + other {
         return *around;
     }

@@ -54,10 +54,9 @@ impl NetworkTree {
             rest,
             order: (0..rest.len() as u32).collect(),
             paths: ShortestPaths::new(graph),
-            pieces: if graph.pieces() > 1 {
-                graph.pieces_of()
-            } else {
-                Vec::new()
+            pieces: match graph.pieces() {
+                ..=1 => Vec::new(),
+                _ => graph.pieces_of(),
             },
             distances: Vec::new(),
             keys: vec![0.0; rest.len()],
@@ -75,11 +74,8 @@ impl NetworkTree {
                 if !is_last {
                     splitter.split(patch, is_folded, &mut parts);
                 }
-                let end = if is_last {
-                    child
-                } else {
-                    below + parts.len() as u32
-                };
+                // Of the last patches there are no parts.
+                let end = below + parts.len() as u32;
                 tree.nodes.push(NetworkNode {
                     middle,
                     rest_radius,
@@ -108,19 +104,17 @@ impl NetworkTree {
 
     /// Bottom up. Children come after their parents, so one backward pass suffices.
     fn refit<V: Volume>(&self, bounds: &mut Bounds<V>, particles: &ClothParticles) {
-        bounds
-            .nodes
-            .resize(self.nodes.len(), V::around(Vec3::ZERO, 0.0));
+        let none = V::around(Vec3::ZERO, 0.0);
+        bounds.nodes.resize(self.nodes.len(), none);
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let children = node.children.start as usize..node.children.end as usize;
-            let volume = match &bounds.nodes[children] {
+            bounds.nodes[index] = match &bounds.nodes[children] {
                 [] => V::around(position(particles, node.slot), 0.0),
                 [a] => *a,
                 [a, b] => V::unite([a, b, a, b]),
                 [a, b, c] => V::unite([a, b, c, c]),
                 [a, b, c, d, ..] => V::unite([a, b, c, d]),
             };
-            bounds.nodes[index] = volume;
         }
     }
 
@@ -260,22 +254,17 @@ impl Splitter<'_> {
             return (*only, 0.0, false);
         }
         let at = |particle: u32| self.rest[particle as usize].as_dvec3();
-        let centroid =
-            members.iter().map(|&particle| at(particle)).sum::<DVec3>() / members.len() as f64;
+        let sum: DVec3 = members.iter().map(|&particle| at(particle)).sum();
+        let centroid = sum / members.len() as f64;
         let distance = |&particle: &u32| at(particle).distance_squared(centroid);
         let nearest = |a: &u32, b: &u32| distance(a).total_cmp(&distance(b));
-        let middle = members
-            .iter()
-            .copied()
-            .min_by(nearest)
-            .expect("no patch is empty");
+        let middle = members.iter().copied().min_by(nearest);
+        let middle = middle.expect("no patch is empty");
         if self.is_in_pieces(members) {
             return (middle, f32::INFINITY, false);
         }
-        let squares = members
-            .iter()
-            .map(|&of| at(of).distance_squared(at(middle)));
-        let straight = squares.fold(0.0, f64::max).sqrt();
+        let square = |&of: &u32| at(of).distance_squared(at(middle));
+        let straight = members.iter().map(square).fold(0.0, f64::max).sqrt();
         let rest_radius = self.paths.farthest(middle, members);
         let is_folded = f64::from(rest_radius) > FOLDED * straight;
         (middle, rest_radius, is_folded)
@@ -295,12 +284,10 @@ impl Splitter<'_> {
 
     /// The bounding box of a patch.
     fn corners(&self, patch: Range<usize>) -> [Vec3; 2] {
-        let places = self.order[patch]
-            .iter()
-            .map(|&particle| self.rest[particle as usize]);
-        places.fold([Vec3::MAX, Vec3::MIN], |[low, high], place| {
-            [low.min(place), high.max(place)]
-        })
+        let members = self.order[patch].iter();
+        let places = members.map(|&particle| self.rest[particle as usize]);
+        let low = places.clone().fold(Vec3::MAX, Vec3::min);
+        [low, places.fold(Vec3::MIN, Vec3::max)]
     }
 
     /// Halves a patch. A patch in pieces is halved between them, as far as halves of equal size allow. A patch that is not folded
@@ -330,25 +317,22 @@ impl Splitter<'_> {
                 piece(*a).cmp(&piece(*b)).then(by_key).then(a.cmp(b))
             });
         }
-        let parts = [
-            patch.start..patch.start + half,
-            patch.start + half..patch.end,
-        ];
+        let middle = patch.start + half;
+        let parts = [patch.start..middle, middle..patch.end];
         parts.into_iter().filter(|part| !part.is_empty())
     }
 
     /// Computes keys for the nearer of two ends of a patch.
     fn sort_by_ends(&mut self, patch: Range<usize>) {
         let members = &self.order[patch];
-        let one = self
-            .paths
-            .distances(members[0], members, &mut self.distances);
-        let other = self.paths.distances(one, members, &mut self.distances);
-        for (&particle, &distance) in members.iter().zip(&self.distances) {
+        let (paths, distances) = (&mut self.paths, &mut self.distances);
+        let one = paths.distances(members[0], members, distances);
+        let other = paths.distances(one, members, distances);
+        for (&particle, &distance) in members.iter().zip(&*distances) {
             self.keys[particle as usize] = distance as f32;
         }
-        self.paths.distances(other, members, &mut self.distances);
-        for (&particle, &distance) in members.iter().zip(&self.distances) {
+        paths.distances(other, members, distances);
+        for (&particle, &distance) in members.iter().zip(&*distances) {
             self.keys[particle as usize] -= distance as f32;
         }
     }

@@ -41,10 +41,8 @@ impl<V: Volume> RefitLevels<V> {
     pub fn refit(&mut self, tree: &GridTree, blocks: &[Block]) {
         self.make_room(tree);
         let inner = &tree.levels[..tree.levels.len() - 1];
-        let wide = inner
-            .iter()
-            .take_while(|level| level.parts_in_strip == 0)
-            .count();
+        let is_wide = |level: &&Level| level.parts_in_strip == 0;
+        let wide = inner.iter().take_while(is_wide).count();
         if let Some(level) = inner.get(wide) {
             for row in 0..level.rows.len() {
                 self.refit_row(tree, blocks, wide, row);
@@ -106,11 +104,8 @@ impl<V: Volume> RefitLevels<V> {
             unite_row::<V>(out, &at.columns, of(upper), of(lower));
         }
         // The last strip may end inside a part: it has fewer particles than that part of other strips.
-        if let Some(part) = at
-            .columns
-            .last()
-            .filter(|part| part.span.end < part.full_end)
-        {
+        let is_cut = |part: &&Part| part.span.end < part.full_end;
+        if let Some(part) = at.columns.last().filter(is_cut) {
             let child = |row: usize, column: u32| {
                 let part = &below.columns[column as usize];
                 let (place, lane) = (part.in_strip as usize, part.lane as usize);
@@ -123,11 +118,8 @@ impl<V: Volume> RefitLevels<V> {
             let (left, right) = (part.children.start, part.children.end - 1);
             let [a, b] = [left, right].map_inline(|column| child(upper, column));
             let [c, d] = [left, right].map_inline(|column| child(lower, column));
-            V::set_lane(
-                &mut out[part.in_strip as usize].0,
-                part.lane as usize,
-                V::unite([&a, &b, &c, &d]),
-            );
+            let out = &mut out[part.in_strip as usize].0;
+            V::set_lane(out, part.lane as usize, V::unite([&a, &b, &c, &d]));
         }
     }
 

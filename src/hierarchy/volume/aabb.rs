@@ -1,7 +1,7 @@
 //! Axis-aligned boxes in the cloth's frame.
 
 use bevy::math::{
-    DVec3, Vec3, Vec3A,
+    Vec3, Vec3A,
     bounding::{Aabb3d, BoundingVolume},
 };
 
@@ -57,15 +57,6 @@ impl Volume for Aabb3d {
             }
             Core::Cuboid { .. } => slabs_may_reach(self, probe, reach),
         }
-    }
-
-    fn holds(&self, centre: DVec3, radius: f64) -> bool {
-        let [min, max] = [self.min, self.max].map(|corner| Vec3::from(corner).as_dvec3());
-        (centre - radius).cmpge(min).all() && (centre + radius).cmple(max).all()
-    }
-
-    fn holds_volume(&self, other: &Self) -> bool {
-        self.contains(other)
     }
 
     fn inflated(&self, radius: f32) -> Self {

@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use bevy::math::{DVec3, Vec3};
+use bevy::math::Vec3;
 
 use crate::{cloth::View, hierarchy::probe::Probe};
 
@@ -22,12 +22,6 @@ pub(crate) trait Volume: Copy + Debug + PartialEq + Send + Sync + 'static {
 
     /// Whether the volume may be within `reach` (m) of the probe's core. Never false if it is.
     fn may_reach(&self, probe: &Probe, reach: f32) -> bool;
-
-    /// Whether it contains a ball at `centre` (m), in `f64`, up to the rounding errors of lengths of `scale` (m).
-    fn holds(&self, centre: DVec3, radius: f64) -> bool;
-
-    /// Whether it contains another volume, up to rounding errors.
-    fn holds_volume(&self, other: &Self) -> bool;
 
     /// Inflated by `radius` (m): around particles including their radius.
     fn inflated(&self, radius: f32) -> Self;

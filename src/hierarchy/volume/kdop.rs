@@ -1,6 +1,6 @@
 //! k-DOPs (Klosowski et al. 1998): polytopes between pairs of parallel planes with fixed directions.
 
-use bevy::math::{DVec3, Vec3, Vec3A, bounding::Aabb3d};
+use bevy::math::{Vec3, Vec3A, bounding::Aabb3d};
 
 use super::{
     aabb::unite_slab,
@@ -37,11 +37,6 @@ pub struct KDop<const N: usize> {
 }
 
 impl<const N: usize> KDop<N> {
-    /// Normals of the pairs of planes, of length 1, √2 or √3.
-    pub fn axes() -> [Vec3; N] {
-        std::array::from_fn(|at| Vec3::from(Self::axis(at)))
-    }
-
     /// An 18-DOP cuts edges and keeps corners.
     #[inline(always)]
     const fn axis(at: usize) -> [f32; 3] {
@@ -55,40 +50,35 @@ impl<const N: usize> KDop<N> {
 
     /// The corners of each face, in order; faces with fewer than three are left out.
     pub fn faces(&self) -> Vec<Vec<Vec3>> {
-        let planes = || {
-            self.slabs()
-                .flat_map(|(axis, low, high)| [(axis, high), (-axis, -low)])
-        };
-        let extent = self
-            .high
-            .iter()
-            .chain(&self.low)
-            .fold(0.0_f32, |most, each| most.max(each.abs()));
+        let sides = |(axis, low, high): (Vec3, f32, f32)| [(axis, high), (-axis, -low)];
+        let planes = || self.slabs().flat_map(sides);
+        let extent = largest(self.high.iter().chain(&self.low));
         let slack = extent * 1.0e-5;
         let face = |(normal, distance): (Vec3, f32)| {
             // A square of the plane larger than everything, cut by every other plane.
             let (u, v) = (normal / normal.length()).any_orthonormal_pair();
             let middle = normal * (distance / normal.length_squared());
             let size = 4.0 * extent + 1.0;
-            let mut corners = vec![u + v, v - u, -u - v, u - v];
-            corners
-                .iter_mut()
-                .for_each(|corner| *corner = middle + *corner * size);
+            let corners = [u + v, v - u, -u - v, u - v];
+            let mut corners = corners.map(|corner| middle + corner * size).to_vec();
             for (normal, distance) in planes().filter(|other| *other != (normal, distance)) {
                 corners = cut(&corners, normal, distance + slack);
             }
             corners
         };
-        planes()
-            .map(face)
-            .filter(|corners| corners.len() > 2)
-            .collect()
+        let mut faces: Vec<Vec<Vec3>> = planes().map(face).collect();
+        faces.retain(|corners| corners.len() > 2);
+        faces
     }
 
     fn size(&self) -> f32 {
-        let coordinates = self.low[..3].iter().chain(&self.high[..3]);
-        3.0 * coordinates.fold(0.0_f32, |most, each| most.max(each.abs()))
+        3.0 * largest(self.low[..3].iter().chain(&self.high[..3]))
     }
+}
+
+/// The largest of these numbers, without their signs.
+fn largest<'a>(numbers: impl Iterator<Item = &'a f32>) -> f32 {
+    numbers.fold(0.0_f32, |most, each| most.max(each.abs()))
 }
 
 /// The part of a convex polygon behind a plane (Sutherland and Hodgman 1974).
@@ -127,19 +117,12 @@ impl<const N: usize> Volume for KDop<N> {
     }
 
     fn unite(children: [&Self; 4]) -> Self {
+        let low = |at: usize| children.map(|child| child.low[at]);
+        let high = |at: usize| children.map(|child| child.high[at]);
+        let (none, all) = (f32::INFINITY, f32::NEG_INFINITY);
         Self {
-            low: std::array::from_fn(|at| {
-                children
-                    .iter()
-                    .map(|child| child.low[at])
-                    .fold(f32::INFINITY, f32::min)
-            }),
-            high: std::array::from_fn(|at| {
-                children
-                    .iter()
-                    .map(|child| child.high[at])
-                    .fold(f32::NEG_INFINITY, f32::max)
-            }),
+            low: std::array::from_fn(|at| low(at).into_iter().fold(none, f32::min)),
+            high: std::array::from_fn(|at| high(at).into_iter().fold(all, f32::max)),
         }
     }
 
@@ -160,18 +143,6 @@ impl<const N: usize> Volume for KDop<N> {
         let slabs = self.slabs().skip(3);
         let slabs = slabs.map(|(axis, low, high)| Slab { axis, low, high });
         slabs::may_reach(slabs, probe, reach, self.size())
-    }
-
-    fn holds(&self, centre: DVec3, radius: f64) -> bool {
-        self.slabs().all(|(axis, low, high)| {
-            let axis = axis.as_dvec3();
-            let (middle, half) = (centre.dot(axis), radius * axis.length());
-            f64::from(low) <= middle - half && middle + half <= f64::from(high)
-        })
-    }
-
-    fn holds_volume(&self, other: &Self) -> bool {
-        (0..N).all(|at| self.low[at] <= other.low[at] && other.high[at] <= self.high[at])
     }
 
     fn faces(&self) -> Vec<Vec<Vec3>> {

@@ -35,21 +35,6 @@ macro_rules! define_node_volume {
                     $(Self::$variant(volume) => volume.inflated(radius).into(),)*
                 }
             }
-
-            /// Whether it contains a point, in `f64`, up to rounding errors.
-            pub(crate) fn holds(&self, point: Vec3) -> bool {
-                match self {
-                    $(Self::$variant(volume) => volume.holds(point.as_dvec3(), 0.0),)*
-                }
-            }
-
-            /// Whether it contains another volume of the same type, up to rounding errors.
-            pub(crate) fn holds_volume(&self, other: &Self) -> bool {
-                match (self, other) {
-                    $((Self::$variant(volume), Self::$variant(other)) => volume.holds_volume(other),)*
-                    _ => false,
-                }
-            }
         }
     };
 }

@@ -1,6 +1,6 @@
 //! Oriented boxes.
 
-use bevy::math::{DVec3, Mat3, Vec3};
+use bevy::math::{Mat3, Vec3};
 
 use super::{
     bounding::Volume,
@@ -31,7 +31,7 @@ impl Obb {
 
     /// Its extent from the middle along `axis`, times the axis' length (m).
     #[inline(always)]
-    fn reach_along(&self, axis: Vec3) -> f32 {
+    pub(in crate::hierarchy) fn reach_along(&self, axis: Vec3) -> f32 {
         (self.axes.transpose() * axis).abs().dot(self.half_size)
     }
 
@@ -132,25 +132,6 @@ impl Volume for Obb {
             }
             Core::Cuboid { .. } => self.slabs_may_reach(probe, reach),
         }
-    }
-
-    fn holds(&self, centre: DVec3, radius: f64) -> bool {
-        let offset = centre - self.centre.as_dvec3();
-        let local = self.axes.as_dmat3().transpose() * offset;
-        // Its axes have length 1 up to rounding errors, and so have measurements along them.
-        let rounding = f64::from(self.half_size.max_element()) * 1.0e-6;
-        (local.abs() + radius)
-            .cmple(self.half_size.as_dvec3() + rounding)
-            .all()
-    }
-
-    fn holds_volume(&self, other: &Self) -> bool {
-        let offset = other.centre.as_dvec3() - self.centre.as_dvec3();
-        (0..3).all(|at| {
-            let (axis, half) = (self.axes.col(at), self.half_size[at]);
-            offset.dot(axis.as_dvec3()).abs() as f32 + other.reach_along(axis)
-                <= half * ROUNDING + self.half_size.max_element() * 1.0e-6
-        })
     }
 
     fn inflated(&self, radius: f32) -> Self {

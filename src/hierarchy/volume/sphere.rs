@@ -1,11 +1,11 @@
 //! Bounding spheres.
 
-use bevy::math::{DVec3, Vec3, Vec3A, bounding::BoundingSphere, primitives::Sphere};
+use bevy::math::{Vec3, Vec3A, bounding::BoundingSphere, primitives::Sphere};
 
 use super::bounding::Volume;
 use crate::{
     cloth::{LANES, Lanes, MapInline, View, X, Y, Z, larger},
-    hierarchy::probe::{Probe, ROUNDING},
+    hierarchy::probe::Probe,
 };
 
 /// Growth factor of a radius on each level, beyond the rounding error of its own sum and root.
@@ -35,18 +35,6 @@ impl Volume for BoundingSphere {
         probe
             .core
             .may_reach(self.center.into(), self.radius() + reach)
-    }
-
-    fn holds(&self, centre: DVec3, radius: f64) -> bool {
-        let distance = Vec3::from(self.center).as_dvec3().distance(centre);
-        distance + radius <= f64::from(self.radius() * ROUNDING)
-    }
-
-    fn holds_volume(&self, other: &Self) -> bool {
-        self.holds(
-            Vec3::from(other.center).as_dvec3(),
-            f64::from(other.radius()),
-        )
     }
 
     fn inflated(&self, radius: f32) -> Self {

@@ -7,7 +7,10 @@ use bevy::math::{
 use proptest::prelude::*;
 
 use super::*;
-use crate::hierarchy::probe::{Core, Probe};
+use crate::hierarchy::{
+    probe::{Core, Probe},
+    tests::holds::Holds,
+};
 
 fn within(limit: f32) -> impl Strategy<Value = Vec3> {
     (-limit..limit, -limit..limit, -limit..limit).prop_map(Vec3::from)
@@ -31,7 +34,7 @@ fn cores() -> impl Strategy<Value = Core> {
 
 /// Around four patches of four particles each: it holds them all, holds its children, and never says that a probe is
 /// out of reach which has one of them in reach.
-fn check<V: Volume>(
+fn check<V: Volume + Holds>(
     points: &[Vec3],
     core: Core,
     reach: f32,

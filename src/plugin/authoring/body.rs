@@ -102,10 +102,8 @@ impl ClothBody {
     /// [`QuantityError`] for a value that is out of range.
     pub(crate) fn mass_at(&self, rotation: Quat) -> Result<BodyMass, QuantityError> {
         let positive = Allowed(|v| v > 0.0 && v.recip().is_finite(), "positive");
-        let usable = Allowed(
-            |v| v > 0.0 && v.is_finite() && v.recip().is_finite(),
-            "positive and finite",
-        );
+        let is_usable = |v: f32| v > 0.0 && v.is_finite() && v.recip().is_finite();
+        let usable = Allowed(is_usable, "positive and finite");
         positive.check("the body's inertia (kg·m²)", self.inertia.to_array())?;
         let quantity = "the distance of the body's centre of mass from its entity (m)";
         Allowed::FINITE.check(quantity, [self.centre_of_mass.length()])?;

@@ -42,11 +42,7 @@ pub enum ClothLodLevel {
 impl ClothLodLevel {
     /// Order of the levels: a finer one is less.
     pub(crate) fn coarseness(self) -> u32 {
-        let stands = if self == Self::Off {
-            u32::MAX
-        } else {
-            u32::MAX - 1
-        };
+        let stands = u32::MAX - u32::from(self != Self::Off);
         self.ticks().unwrap_or(stands)
     }
 
@@ -166,13 +162,8 @@ impl ClothLod {
     /// How many of the distances a cloth has passed that is `distance` away (m), if it had passed `before` of them.
     pub(crate) fn passed(&self, distance: f32, before: usize) -> usize {
         let mut passed = before.min(self.distances.len());
-        while self
-            .distances
-            .get(passed)
-            .is_some_and(|(from, _)| distance >= *from)
-        {
-            passed += 1;
-        }
+        let beyond = self.distances[passed..].iter();
+        passed += beyond.take_while(|(from, _)| distance >= *from).count();
         let back = 1.0 - self.hysteresis;
         while passed > 0 && distance < self.distances[passed - 1].0 * back {
             passed -= 1;

@@ -257,36 +257,31 @@ impl File {
     fn add_floats<const N: usize>(&mut self, values: &[[f32; N]], target: Option<u32>) -> Value {
         let kind = ["", "SCALAR", "VEC2", "VEC3"][N];
         let fold = |start: f32, f: fn(f32, f32) -> f32| {
-            let each = values.iter();
-            each.fold([start; N], |best, value| {
-                std::array::from_fn(|at| f(best[at], value[at]))
-            })
-            .to_vec()
+            let of = |at: usize| values.iter().map(move |value| value[at]).fold(start, f);
+            Vec::from_iter((0..N).map(of))
         };
-        let (min, max) = (
-            fold(f32::INFINITY, f32::min),
-            fold(f32::NEG_INFINITY, f32::max),
-        );
+        let min = fold(f32::INFINITY, f32::min);
+        let max = fold(f32::NEG_INFINITY, f32::max);
         let start = self.bytes.len();
         let numbers = values.as_flattened().iter();
-        self.bytes
-            .extend(numbers.flat_map(|number| number.to_le_bytes()));
+        let bytes = numbers.flat_map(|number| number.to_le_bytes());
+        self.bytes.extend(bytes);
         self.accessor(start, json!({"componentType": FLOAT, "count": values.len(), "type": kind, "min": min, "max": max}), target)
     }
 
     fn add_indices(&mut self, indices: &[u32]) -> Value {
         let start = self.bytes.len();
-        self.bytes
-            .extend(indices.iter().flat_map(|index| index.to_le_bytes()));
-        let accessor =
-            json!({"componentType": UNSIGNED_INT, "count": indices.len(), "type": "SCALAR"});
+        let bytes = indices.iter().flat_map(|index| index.to_le_bytes());
+        self.bytes.extend(bytes);
+        let count = indices.len();
+        let accessor = json!({"componentType": UNSIGNED_INT, "count": count, "type": "SCALAR"});
         self.accessor(start, accessor, Some(ELEMENT_ARRAY_BUFFER))
     }
 
     /// Describes the bytes from `start` on.
     fn accessor(&mut self, start: usize, mut accessor: Value, target: Option<u32>) -> Value {
-        let mut view =
-            json!({"buffer": 0, "byteOffset": start, "byteLength": self.bytes.len() - start});
+        let length = self.bytes.len() - start;
+        let mut view = json!({"buffer": 0, "byteOffset": start, "byteLength": length});
         if let Some(target) = target {
             view["target"] = json!(target);
         }

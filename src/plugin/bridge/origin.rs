@@ -116,10 +116,8 @@ fn shift(
         };
         let state = &mut *cloth.state;
         state.pose.shift(shift, [before, after], &joints);
-        state.attachments.first_target = state
-            .attachments
-            .first_target
-            .map(|was| shift.rigid(was, carrier));
+        let first_target = &mut state.attachments.first_target;
+        *first_target = first_target.map(|was| shift.rigid(was, carrier));
         state.lod.frozen = state.lod.frozen.map(|was| was.shifted(shift, carrier));
         state.inputs.forces.shift(shift, zone);
         let rounding = 2.0 * shift.rounding(before.isometry().translation);

@@ -63,9 +63,8 @@ pub struct ClothPickingPlugin {
 
 impl Default for ClothPickingPlugin {
     fn default() -> Self {
-        Self {
-            button: Some(PointerButton::Primary),
-        }
+        let button = Some(PointerButton::Primary);
+        Self { button }
     }
 }
 
@@ -111,18 +110,16 @@ struct PointerHand {
     distance: f32,
 }
 
+type Looks = (
+    Option<&'static ViewVisibility>,
+    Option<&'static RenderLayers>,
+    Option<&'static Pickable>,
+);
+
 /// The entities that pointers may hit.
 #[derive(SystemParam)]
 struct Pickables<'w, 's> {
-    all: Query<
-        'w,
-        's,
-        (
-            Option<&'static ViewVisibility>,
-            Option<&'static RenderLayers>,
-            Option<&'static Pickable>,
-        ),
-    >,
+    all: Query<'w, 's, Looks>,
     cloths: Query<'w, 's, (), With<Cloth>>,
     #[cfg(feature = "mesh")]
     driven: Query<'w, 's, (Entity, &'static ClothRenderMesh), Without<Cloth>>,
@@ -130,10 +127,8 @@ struct Pickables<'w, 's> {
 
 impl Pickables<'_, '_> {
     fn pickable(&self, entity: Entity) -> Option<&Pickable> {
-        self.all
-            .get(entity)
-            .ok()
-            .and_then(|(.., pickable)| pickable)
+        let (.., pickable) = self.all.get(entity).ok()?;
+        pickable
     }
 
     fn is_hoverable(&self, entity: Entity) -> bool {
@@ -223,16 +218,11 @@ fn take_pressed(
     }
     let id = RayId::new(press.hit.camera, press.pointer_id);
     // Another backend may have found it, too, without saying where.
-    let hit = rays
-        .map
-        .get(&id)
-        .and_then(|&ray| ray_cast.cast_where(ray, f32::INFINITY, |entity| entity == cloth));
-    if let Some(hit) = hit {
-        let hand = PointerHand {
-            ray: id,
-            distance: hit.distance,
-        };
-        commands.spawn((hit.grab(), hand));
+    if let Some(&ray) = rays.map.get(&id)
+        && let Some(hit) = ray_cast.cast_where(ray, f32::INFINITY, |entity| entity == cloth)
+    {
+        let (ray, distance) = (id, hit.distance);
+        commands.spawn((hit.grab(), PointerHand { ray, distance }));
     }
 }
 

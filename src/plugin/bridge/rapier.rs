@@ -88,9 +88,8 @@ fn release<C: Component>(
     mut commands: Commands,
 ) {
     if let Ok(known) = adopted.get(removed.entity) {
-        commands
-            .entity(removed.entity)
-            .try_remove::<ClothCollider>();
+        let mut collider = commands.entity(removed.entity);
+        collider.try_remove::<ClothCollider>();
         ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
     }
 }
@@ -101,36 +100,36 @@ fn adopt_colliders(
     mut commands: Commands,
 ) {
     for (entity, collider, cloth_collider) in &mut adopted {
-        let is_known = match cloth_collider.as_deref() {
-            Some(ClothCollider::Shared(shared)) => shared.is_of(&collider.raw),
-            _ => false,
-        };
-        if is_known {
+        if let Some(ClothCollider::Shared(shared)) = cloth_collider.as_deref()
+            && shared.is_of(&collider.raw)
+        {
             continue;
         }
         let wanted = match collider.as_ball() {
             // A ball becomes a plain ball collider, which games can read and change, without the transform's scale.
             Some(ball) => {
-                let scale = transforms
-                    .compute_global_transform(entity)
-                    .map_or(1.0, |transform| transform.scale().abs().max_element());
-                let unscaled = if scale > 0.0 {
-                    ball.radius() / scale
-                } else {
-                    ball.radius()
-                };
-                ClothCollider::ball(unscaled)
+                let place = transforms.compute_global_transform(entity);
+                let scale = place.map_or(1.0, |place| place.scale().abs().max_element());
+                let scale = if scale > 0.0 { scale } else { 1.0 };
+                ClothCollider::ball(ball.radius() / scale)
             }
             None => ClothCollider::parry(collider.raw.clone()),
         };
-        match cloth_collider {
-            Some(mut known) => {
-                known.set_if_neq(wanted);
-            }
-            None => {
-                commands.entity(entity).try_insert(wanted);
-            }
-        }
+        set(cloth_collider, wanted, entity, &mut commands);
+    }
+}
+
+/// Gives an entity a component, or another value of it.
+fn set<C: Component + PartialEq>(
+    known: Option<impl DetectChangesMut<Inner = C>>,
+    wanted: C,
+    entity: Entity,
+    commands: &mut Commands,
+) {
+    if let Some(mut known) = known {
+        known.set_if_neq(wanted);
+    } else {
+        commands.entity(entity).try_insert(wanted);
     }
 }
 
@@ -204,9 +203,8 @@ fn read_masses(
         // Rapier computes the mass in its first step.
         if *kind != RigidBody::Dynamic || mass.mass <= 0.0 {
             if known.is_some() {
-                commands
-                    .entity(entity)
-                    .try_remove::<(ClothBody, ClothPush)>();
+                let mut body = commands.entity(entity);
+                body.try_remove::<(ClothBody, ClothPush)>();
             }
             continue;
         }
@@ -232,14 +230,7 @@ fn read_masses(
                 LockedAxes::ROTATION_LOCKED_Z,
             ]),
         };
-        match known {
-            Some(mut known) => {
-                known.set_if_neq(body);
-            }
-            None => {
-                commands.entity(entity).try_insert(body);
-            }
-        }
+        set(known, body, entity, &mut commands);
     }
 }
 

@@ -127,11 +127,8 @@ impl ClothRayCast<'_, '_> {
             let face = found.particles;
             let [a, b, c] = face.map(|particle| particles.position_at(particle as usize));
             let normal = (b - a).cross(c - a).normalize_or(-*direction);
-            let normal = if normal.dot(*direction) > 0.0 {
-                -normal
-            } else {
-                normal
-            };
+            let is_behind = normal.dot(*direction) > 0.0;
+            let normal = if is_behind { -normal } else { normal };
             let [u, v, w] = found.weights;
             let point = a * u + b * v + c * w;
             let far = |corner: usize| [a, b, c][corner].distance_squared(point);

@@ -231,11 +231,8 @@ impl GizmoMemory {
             _ => (BoundingVolume::Sphere, BoundRule::RestShape),
         };
         let stretch = cloth.state.stretch.bound;
-        if self
-            .bounds
-            .rebuild(choice, tree, cloth.particles, stretch)
-            .is_err()
-        {
+        let rebuilt = (self.bounds).rebuild(choice, tree, cloth.particles, stretch);
+        if rebuilt.is_err() {
             return;
         }
         if matches!(cloth.stats.search, SearchMethod::Tree(..)) {
@@ -246,12 +243,9 @@ impl GizmoMemory {
         self.query.clear();
         let root = tree.root_sphere(cloth.particles, stretch);
         for (_, collider) in &scratch.near {
-            let (probe, _) =
-                scratch
-                    .detection
-                    .probe(collider, &scratch.contact_settings, surface, 0.0, &root);
-            self.query
-                .search(tree, &self.bounds, cloth.particles, &probe);
+            let (detection, settings) = (&scratch.detection, &scratch.contact_settings);
+            let (probe, _) = detection.probe(collider, settings, surface, 0.0, &root);
+            (self.query).search(tree, &self.bounds, cloth.particles, &probe);
         }
         self.query.states_into(tree, &mut self.states);
     }
@@ -271,11 +265,8 @@ impl GizmoMemory {
         let radius = cloth.scratch.contact_settings.particle_radius;
         let smallest = look.smallest * surface.spacing().typical;
         for level in first.min(leaves)..=last.min(leaves) {
-            let radius = if level == leaves {
-                radius.max(smallest)
-            } else {
-                radius
-            };
+            let least = if level == leaves { smallest } else { radius };
+            let radius = radius.max(least);
             for node in tree.levels()[level].clone() {
                 if !show.contains(surface, tree.node(node).middle) {
                     continue;
@@ -286,13 +277,8 @@ impl GizmoMemory {
                     Some(NodeState::Unvisited) | None => look.unvisited,
                 };
                 let volume = self.bounds.node(tree, cloth.particles, node, radius);
-                draw_volume(
-                    &volume,
-                    cloth.frame.isometry(),
-                    color,
-                    look.resolution,
-                    gizmos,
-                );
+                let frame = cloth.frame.isometry();
+                draw_volume(&volume, frame, color, look.resolution, gizmos);
             }
         }
     }
@@ -322,11 +308,8 @@ fn draw_volume(
                 .resolution(resolution);
         }
         NodeVolume::Aabb(aabb) => {
-            let size = Vec3::from(aabb.max - aabb.min);
-            draw_box(
-                Isometry3d::from_translation(aabb.min.midpoint(aabb.max)),
-                size,
-            );
+            let middle = Isometry3d::from_translation(aabb.min.midpoint(aabb.max));
+            draw_box(middle, Vec3::from(aabb.max - aabb.min));
         }
         NodeVolume::Obb(obb) => {
             let rotation = Quat::from_mat3(&obb.axes);
@@ -358,10 +341,8 @@ fn draw_springs(
             SpringKind::Shear => look.springs.with_alpha(look.springs.alpha() * 0.5),
             SpringKind::Bend => look.springs.with_alpha(look.springs.alpha() * 0.25),
         };
-        let [a, b] = spring
-            .ends
-            .map(|end| cloth.particles.position(end as usize));
-        if let (Some(a), Some(b)) = (a, b) {
+        let places = (spring.ends).map(|end| cloth.particles.position(end as usize));
+        if let [Some(a), Some(b)] = places {
             gizmos.line(cloth.frame.to_world(a), cloth.frame.to_world(b), color);
         }
     });

@@ -169,14 +169,11 @@ impl ClothBuilt {
     /// The largest density of a mesh over its mean; 0 if it is as dense everywhere. The chains of a grid need no more sub-steps for that.
     pub(crate) fn density_ratio(&self) -> f32 {
         let factors = self.from.as_ref().map(|from| &from.factors.density);
-        match factors {
-            Some(density)
-                if density.most > density.least && self.surface().rest_grid().is_none() =>
-            {
-                density.most / density.mean
-            }
-            _ => 0.0,
-        }
+        let differs = factors.filter(|of| of.most > of.least);
+        let is_mesh = self.surface().rest_grid().is_none();
+        differs
+            .filter(|_| is_mesh)
+            .map_or(0.0, |of| of.most / of.mean)
     }
 
     /// Gives particles the masses that material and pins give them.
@@ -263,20 +260,14 @@ impl ClothBuilt {
         *largest_gravity = largest_gravity.max(Tethers::made_for(gravity));
         self.material_stretch = gives(gravity);
         self.largest_material_stretch = gives(largest_gravity.max(gravity));
-        let made_for = Some(if wanted {
-            [*largest_gravity, weight]
-        } else {
-            [0.0; 2]
-        });
+        let needs = [*largest_gravity, weight];
+        let made_for = Some(if wanted { needs } else { [0.0; 2] });
         if self.tethered == made_for {
             return false;
         }
         self.tethered = made_for;
-        let tethers = if wanted {
-            Tethers::new(surface, material, particles, *largest_gravity)
-        } else {
-            Tethers::default()
-        };
+        let tethers = || Tethers::new(surface, material, particles, *largest_gravity);
+        let tethers = wanted.then(tethers).unwrap_or_default();
         self.solver.set_tethers(tethers);
         let free_pieces = FreePieces::new(surface, particles);
         self.solver.set_free_pieces(free_pieces);

@@ -150,8 +150,7 @@ impl Inputs {
 
     /// The distance at which particles lie on colliders (m): a rope's own radius.
     pub fn particle_radius(&self, surface: &Surface) -> f32 {
-        surface
-            .rope_radius()
-            .unwrap_or(self.settings.particle_radius)
+        let own = surface.rope_radius();
+        own.unwrap_or(self.settings.particle_radius)
     }
 }

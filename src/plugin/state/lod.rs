@@ -118,11 +118,8 @@ impl LodState {
             self.since += 1;
             return;
         }
-        let left = if was == level {
-            ticks
-        } else {
-            1 + phase % ticks
-        };
+        let first = 1 + phase % ticks;
+        let left = if was == level { ticks } else { first };
         // A cloth that is moved before its picture has reached the last move would jump there; one whose picture is
         // less late than before would jump ahead.
         if has_stood || self.since + 1 < self.span || self.ticks + 1 > left {

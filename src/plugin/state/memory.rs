@@ -116,35 +116,24 @@ impl InputMemory {
 impl ClothState {
     /// Copies `other` into its own memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        let Self {
-            is_valid,
-            lod,
-            control,
-            ref rest,
-            layer_substeps,
-            stretch,
-            largest_speed,
-            ref inputs,
-            ref attachments,
-            ref pose,
-            ref resting,
-            ref carriers,
-            largest_gravity,
-            resumes,
-            reported,
-            ref creases,
-        } = *other;
-        self.rest.copy_from(rest);
-        self.inputs.copy_from(inputs);
-        self.attachments.copy_from(attachments);
-        self.pose.copy_from(pose);
-        self.resting.copy_from(resting);
-        self.carriers.clone_from(carriers);
-        (self.is_valid, self.lod, self.control) = (is_valid, lod, control);
-        (self.layer_substeps, self.stretch) = (layer_substeps, stretch);
-        (self.largest_speed, self.largest_gravity) = (largest_speed, largest_gravity);
-        (self.resumes, self.reported) = (resumes, reported);
-        self.creases.clone_from(creases);
+        let mut own = std::mem::take(self);
+        own.rest.copy_from(&other.rest);
+        own.inputs.copy_from(&other.inputs);
+        own.attachments.copy_from(&other.attachments);
+        own.pose.copy_from(&other.pose);
+        own.resting.copy_from(&other.resting);
+        own.carriers.clone_from(&other.carriers);
+        own.creases.clone_from(&other.creases);
+        *self = Self {
+            rest: own.rest,
+            inputs: own.inputs,
+            attachments: own.attachments,
+            pose: own.pose,
+            resting: own.resting,
+            carriers: own.carriers,
+            creases: own.creases,
+            ..*other
+        };
     }
 
     /// Wakes the cloth, and all its pieces.
@@ -174,10 +163,7 @@ impl ClothState {
             && is_of_all(self.pose.places.len())
             && is_of_all(self.pose.normals.len())
             && self.attachments.attached.iter().all(is_attached)
-            && self
-                .carriers
-                .iter()
-                .all(|(_, carrier)| carrier.is_in(blocks))
+            && (self.carriers.iter()).all(|(_, carrier)| carrier.is_in(blocks))
     }
 
     /// Forgets attachments, carried bodies, gravity and creases, because the particles have been replaced.

@@ -108,12 +108,8 @@ impl Pieces {
     /// The particles whose piece sleeps.
     pub fn asleep(&self) -> impl Iterator<Item = u32> {
         let any = self.all.iter().any(|piece| piece.is_asleep);
-        let count = if any {
-            self.of_particle.len() as u32
-        } else {
-            0
-        };
-        (0..count).filter(|particle| self.sleeps(*particle))
+        let count = if any { self.of_particle.len() } else { 0 };
+        (0..count as u32).filter(|particle| self.sleeps(*particle))
     }
 
     /// Takes the particles as a tick of this many seconds begins, and the pins that move in it. Pieces that leave their places wake.
@@ -160,11 +156,8 @@ impl Pieces {
                 piece.wake();
             }
         }
-        if self
-            .all
-            .iter()
-            .any(|piece| piece.may_sleep(limits.patience))
-        {
+        let may_sleep = |piece: &Piece| piece.may_sleep(limits.patience);
+        if self.all.iter().any(may_sleep) {
             self.measure(particles);
         }
     }

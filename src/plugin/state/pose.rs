@@ -53,9 +53,8 @@ impl SkinLimits {
         surface: &Arc<Surface>,
     ) -> Result<Self, ClothError> {
         skin.validate()?;
-        let mut max_distances = skin
-            .max_distance
-            .values(surface, "a particle's max distance (m)")?;
+        let quantity = "a particle's max distance (m)";
+        let mut max_distances = skin.max_distance.values(surface, quantity)?;
         for distance in &mut max_distances {
             *distance = skin.blended(unbounded(*distance), surface.diagonal());
         }
@@ -73,19 +72,15 @@ impl SkinLimits {
             has_balls: max_distances.iter().any(is_ball),
             max_distances,
             backstops,
-            radius: skin
-                .backstop
-                .as_ref()
-                .map_or(0.0, |backstop| backstop.radius),
+            radius: skin.backstop.as_ref().map_or(0.0, |of| of.radius),
         })
     }
 
     /// The particles that it holds in the pose.
     pub fn held(&self) -> impl Iterator<Item = usize> + Clone {
         let distances = self.max_distances.iter().enumerate();
-        distances
-            .filter(|(_, distance)| **distance == 0.0)
-            .map(|(index, _)| index)
+        let held = distances.filter(|(_, distance)| **distance == 0.0);
+        held.map(|(index, _)| index)
     }
 }
 
@@ -127,11 +122,9 @@ impl Pose {
             }
             return Ok(());
         };
-        if skinning.joints() > self.joints.len() {
-            return Err(ClothError::Skin(SkinError::MissingJoints {
-                needed: skinning.joints(),
-                joints: self.joints.len(),
-            }));
+        let (needed, joints) = (skinning.joints(), self.joints.len());
+        if needed > joints {
+            return Err(SkinError::MissingJoints { needed, joints }.into());
         }
         skinning.places(&self.joints, &mut self.places);
         if with_normals {
@@ -139,10 +132,8 @@ impl Pose {
         }
         // The frame is far from the world's origin where the joints are: their difference is taken before they are turned.
         let isometry = frame.isometry();
-        let (origin, turn) = (
-            Vec3::from(isometry.translation),
-            isometry.rotation.inverse(),
-        );
+        let origin = Vec3::from(isometry.translation);
+        let turn = isometry.rotation.inverse();
         for place in &mut self.places {
             *place = turn * (*place - origin);
         }
@@ -163,9 +154,8 @@ impl Pose {
     /// Takes over other particles, each in the place of one of the known ones.
     pub fn take_parts(&mut self, of: &[u32]) {
         let taken = |known: &[Vec3]| -> Vec<Vec3> {
-            let each = of.iter();
-            each.filter_map(|of| known.get(*of as usize).copied())
-                .collect()
+            let each = of.iter().filter_map(|of| known.get(*of as usize));
+            each.copied().collect()
         };
         self.places = taken(&self.places);
         self.normals = taken(&self.normals);
@@ -181,12 +171,12 @@ impl Pose {
 
     /// Transforms it to another frame.
     pub fn transform(&mut self, by: Isometry3d) {
-        self.places
-            .iter_mut()
-            .for_each(|place| *place = by * *place);
-        self.normals
-            .iter_mut()
-            .for_each(|normal| *normal = by.rotation * *normal);
+        for place in &mut self.places {
+            *place = by * *place;
+        }
+        for normal in &mut self.normals {
+            *normal = by.rotation * *normal;
+        }
     }
 
     /// The largest distance of a place from that in `other`, seen from another frame (m).

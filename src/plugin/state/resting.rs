@@ -77,9 +77,8 @@ impl RestsOn {
     }
 
     fn has_shape_of(&self, collider: &MovingCollider) -> bool {
-        self.shape
-            .as_ref()
-            .is_none_or(|shape| *shape == collider.shape)
+        let shape = self.shape.as_ref();
+        shape.is_none_or(|shape| *shape == collider.shape)
     }
 
     /// Whether a body is where it was, and moves from there as before: by gravity alone, or not at all. In the tick in which the cloth

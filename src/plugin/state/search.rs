@@ -25,11 +25,6 @@ pub struct ClothSearch {
 }
 
 impl ClothSearch {
-    /// The bounding volumes.
-    pub fn bounds(&self) -> &NodeBounds {
-        &self.bounds
-    }
-
     /// The nodes that were visited, the nodes that touched, and the candidates.
     pub fn query(&self) -> &TopDownQuery {
         &self.query

@@ -120,8 +120,8 @@ impl Shared {
 
     /// The sheet that contact of cloth with cloth searches.
     pub fn sheet(&self) -> &Arc<Sheet> {
-        self.sheet
-            .get_or_init(|| Arc::new(Sheet::new(&self.surface, &self.tree)))
+        let make = || Arc::new(Sheet::new(&self.surface, &self.tree));
+        self.sheet.get_or_init(make)
     }
 
     /// Whether contact of cloth with cloth has needed its sheet.

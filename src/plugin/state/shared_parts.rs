@@ -97,23 +97,23 @@ impl SharedParts {
     /// Begins to build in the background what this cloth needs in its next tick, in place of what it needed before.
     pub fn build_ahead(&mut self, cloth: Entity, request: BuildRequest) {
         if self.alike(&request.recipe).is_empty() {
-            self.builds
-                .begin(request, TriangleMesh::default(), Vec::new(), Some(cloth));
+            let mesh = TriangleMesh::default();
+            self.builds.begin(request, mesh, Vec::new(), Some(cloth));
         }
     }
 
     /// The shared data of a recipe that is [built ahead](Self::build_ahead), to be kept until [`get`](Self::get) finds it. `None` also
     /// if it can't be built: [`get`](Self::get) says why.
     pub fn built_ahead(&mut self, recipe: &Recipe) -> Option<Arc<Shared>> {
-        let built = self.builds.take_begun(recipe)?;
-        built.ok().map(|built| self.keep(built))
+        let built = self.builds.take_begun(recipe)?.ok()?;
+        Some(self.keep(built))
     }
 
     /// All that is made of a recipe.
     fn alike(&self, recipe: &Recipe) -> Vec<Arc<Shared>> {
         let all = self.known.iter().filter_map(Weak::upgrade);
-        all.filter(|known| known.recipe.as_ref() == Some(recipe))
-            .collect()
+        let alike = all.filter(|known| known.recipe.as_ref() == Some(recipe));
+        alike.collect()
     }
 
     /// The same for a cloth whose material, or the factors of it, have changed.
@@ -128,9 +128,8 @@ impl SharedParts {
         };
         // A surface of that recipe exists, so it can't be refused.
         let known = |_: &Surface| Ok(factors.clone());
-        let other = self.get(recipe, material, None, known, || {
-            Ok((*shared.surface).clone())
-        });
+        let surface = || Ok((*shared.surface).clone());
+        let other = self.get(recipe, material, None, known, surface);
         other.unwrap_or_else(|_| shared.clone())
     }
 }

@@ -75,11 +75,10 @@ pub(crate) fn make_bone_colliders(
             None => Ok(()),
             Some(colliders) => colliders.map(|colliders| {
                 despawn_colliders(entity, &owners, &mut commands);
+                let owned = colliders.into_iter().map(|of| (of, BoneColliderOf(entity)));
                 made.all.clear();
-                made.all.extend(colliders.into_iter().map(|bundle| {
-                    let collider = (bundle, BoneColliderOf(entity));
-                    commands.spawn(collider).id()
-                }));
+                made.all
+                    .extend(owned.map(|collider| commands.spawn(collider).id()));
             }),
         };
         ClothFault::report(&mut commands, entity, fault, Part::Collider, outcome);

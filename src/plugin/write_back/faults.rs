@@ -38,15 +38,12 @@ pub(crate) fn log_faults(faults: Query<(Named, &ClothFault), Changed<ClothFault>
             continue;
         }
         let (error, others) = (&fault.error, faults.iter().skip(index + 1));
+        let name = name.describe(fault.part);
         match others.filter(is_like).count() {
-            0 => error!(
-                "{} is left out of the cloth simulation: {error}",
-                name.describe(fault.part)
-            ),
-            others => error!(
-                "{} and {others} more are left out of the cloth simulation: {error}",
-                name.describe(fault.part)
-            ),
+            0 => error!("{name} is left out of the cloth simulation: {error}"),
+            others => {
+                error!("{name} and {others} more are left out of the cloth simulation: {error}")
+            }
         }
     }
 }

@@ -52,9 +52,8 @@ pub(crate) fn send_touch_messages(
             }
         }
         reported.retain(|reported| {
-            let lasts = now
-                .iter()
-                .any(|contact| contact.collider == reported.collider);
+            let mut each = now.iter();
+            let lasts = each.any(|contact| contact.collider == reported.collider);
             if !lasts {
                 stopped.write(reported.stopped(cloth));
             }

@@ -67,15 +67,12 @@ impl ChainBending {
     pub fn new(plate: &Plate) -> Self {
         let layout = plate.layout;
         let (rows, columns) = (layout.rows, layout.columns);
+        let of_row = |row: u32| match row < rows {
+            true => plate.across(row, 1),
+            false => 0.0,
+        };
         let of_rows = |group: usize| -> Lanes {
-            std::array::from_fn(|lane| {
-                let row = (group * LANES + lane) as u32;
-                if row < rows {
-                    plate.across(row, 1)
-                } else {
-                    0.0
-                }
-            })
+            std::array::from_fn(|lane| of_row((group * LANES + lane) as u32))
         };
         let groups = (rows as usize).div_ceil(LANES);
         let mut families = Vec::new();
@@ -122,18 +119,11 @@ impl ChainBending {
             Solve::Across => family.stiffness.len() * self.columns.len(),
             _ => family.stiffness.len() * rows,
         };
+        let families = || self.families.iter();
         Factors {
             weight: f32::NAN,
-            stiffness: self
-                .families
-                .iter()
-                .map(|of| of.stiffness.clone())
-                .collect(),
-            factors: self
-                .families
-                .iter()
-                .map(|of| vec![NOTHING; count(of)])
-                .collect(),
+            stiffness: families().map(|of| of.stiffness.clone()).collect(),
+            factors: families().map(|of| vec![NOTHING; count(of)]).collect(),
         }
     }
 

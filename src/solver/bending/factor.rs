@@ -17,13 +17,8 @@ pub(super) fn factor_chain(
     stiffness: f64,
     mut put: impl FnMut(u32, [f32; 3]),
 ) {
-    let k = |at: u32| {
-        if at > 0 && at + 1 < count {
-            stiffness
-        } else {
-            0.0
-        }
-    };
+    let is_inside = |at: u32| at > 0 && at + 1 < count;
+    let k = |at: u32| if is_inside(at) { stiffness } else { 0.0 };
     // Of the particle before, and of the one before that: D, its inverse or 0, and the first number of L.
     let (mut one, mut two) = ((0.0, 0.0), (0.0, 0.0));
     let mut lower_of_one = 0.0;

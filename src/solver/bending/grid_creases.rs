@@ -141,14 +141,8 @@ impl GridCreases {
         }
         self.load(blocks, part);
         for crease in &mut self.creases {
-            let places = crease
-                .particles
-                .map(|particle| self.places[particle as usize]);
-            crease.forces = if crease.is_cell {
-                of_cell(places, crease.moment)
-            } else {
-                of_chain(places, crease.moment)
-            };
+            let places = crease.particles.map(|at| self.places[at as usize]);
+            crease.forces = forces(places, crease.moment, crease.is_cell);
         }
     }
 
@@ -203,10 +197,9 @@ impl GridCreases {
             let flow = creasing.flow(bent(own) + twisted / cells.max(1.0));
             let mut flows = [flow, flow, 0.0];
             if own[TWIST] != 0.0 {
-                let corner = |down: u32, right: u32| {
-                    bent(self.trials[at + (down * columns + right) as usize])
-                };
-                let bent = corner(0, 0) + corner(0, 1) + corner(1, 0) + corner(1, 1);
+                let below = at + columns as usize;
+                let corners = [at, at + 1, below, below + 1].map(|at| bent(self.trials[at]));
+                let bent = corners[0] + corners[1] + corners[2] + corners[3];
                 let twisted = 2.0 * own[TWIST] * own[TWIST];
                 flows[TWIST] = creasing.flow(bent / 4.0 + twisted);
             }
@@ -327,20 +320,16 @@ impl Frame {
     }
 }
 
-fn of_chain(places: [Vec3; 5], moment: f32) -> [Vec3; 5] {
-    let (difference, along) = chain(places);
+/// The forces of a crease on its particles (N), along the normal where they are.
+fn forces(places: [Vec3; 5], moment: f32, is_cell: bool) -> [Vec3; 5] {
+    let (difference, along) = if is_cell { cell(places) } else { chain(places) };
     let Some(frame) = Frame::new(along) else {
         return [Vec3::ZERO; 5];
     };
     let [a, b] = frame.levers(difference, moment);
-    [moment + a, moment - a, -2.0 * moment, b, -b].map(|force| force * frame.normal)
-}
-
-fn of_cell(places: [Vec3; 5], moment: f32) -> [Vec3; 5] {
-    let (difference, along) = cell(places);
-    let Some(frame) = Frame::new(along) else {
-        return [Vec3::ZERO; 5];
+    let forces = match is_cell {
+        true => [moment + a, b - moment, -b - moment, moment - a, 0.0],
+        false => [moment + a, moment - a, -2.0 * moment, b, -b],
     };
-    let [a, b] = frame.levers(difference, moment);
-    [moment + a, b - moment, -b - moment, moment - a, 0.0].map(|force| force * frame.normal)
+    forces.map(|force| force * frame.normal)
 }

@@ -46,9 +46,7 @@ impl Face {
         let place = |particle: u32| (places[particle as usize] - origin).as_vec3();
         let mut new = Self {
             particles: patch.particles,
-            curvature: patch
-                .curvature
-                .map_inline(|of| of.map_inline(|number| number as f32)),
+            curvature: (patch.curvature).map_inline(|of| of.map_inline(|number| number as f32)),
             stiffness: std::array::from_fn(|row| std::array::from_fn(|column| number(row, column))),
             natural: [Vec3::ZERO; 3],
             most: 4.0 / (2.0 * patch.area as f32).sqrt(),
@@ -61,10 +59,8 @@ impl Face {
     /// Its curvatures in its frame.
     fn bent(&self, at: &[Vec3; 6], [x, y, z]: &[Vec3; 3]) -> [Vec3; 3] {
         self.curvature.map_inline(|of| {
-            let numbers = of.iter().zip(at);
-            let bent: Vec3 = numbers
-                .map(|(number, place)| *number * (*place - at[0]))
-                .sum();
+            let each = of.iter().zip(at);
+            let bent: Vec3 = each.map(|(of, place)| *of * (*place - at[0])).sum();
             Vec3::new(bent.dot(*x), bent.dot(*y), bent.dot(*z))
         })
     }
@@ -74,10 +70,8 @@ impl Face {
         let axes = axes_of(at)?;
         let crease = crease.map_inline(Vec3::from);
         let moments = self.stiffness.map_inline(|of| -> Vec3 {
-            of.iter()
-                .zip(crease)
-                .map(|(number, crease)| *number * crease)
-                .sum()
+            let each = of.iter().zip(crease);
+            each.map(|(number, crease)| *number * crease).sum()
         });
         let mut forces: [Vec3; 6] = std::array::from_fn(|particle| {
             let of = self.curvature.iter().zip(moments);
@@ -95,10 +89,8 @@ impl Face {
         forces[2].z -= lift;
         let [x, y, z] = axes;
         let forces = forces.map_inline(|force| force.x * x + force.y * y + force.z * z);
-        forces
-            .iter()
-            .all(|force| force.is_finite())
-            .then_some(forces)
+        let is_finite = forces.iter().all(|force| force.is_finite());
+        is_finite.then_some(forces)
     }
 }
 
@@ -117,20 +109,15 @@ pub(super) struct MeshCreases {
 
 impl MeshCreases {
     pub fn new(surface: &Surface, rigidity: Woven, factors: &StiffnessFactors) -> Self {
-        let places: Vec<DVec3> = surface
-            .rest_positions()
-            .iter()
-            .map(|place| place.as_dvec3())
-            .collect();
+        let places = surface.places_in_f64();
         let bending = surface.bending_faces();
         let mut faces = Vec::with_capacity(bending.faces().len());
         for (index, face) in bending.faces().iter().enumerate() {
             let patch = Patch::new(*face, bending.beside(index), &places);
             faces.push(patch.and_then(|patch| {
-                let warp = surface
-                    .bending_grain(index)
-                    .filter(|_| rigidity.ratio != 1.0);
-                let woven = patch.woven(warp.map(Vec3::as_dvec3), rigidity.ratio.into(), &places);
+                let warp = surface.bending_grain(index).map(Vec3::as_dvec3);
+                let warp = warp.filter(|_| rigidity.ratio != 1.0);
+                let woven = patch.woven(warp, rigidity.ratio.into(), &places);
                 let rigidity = rigidity.mean * factors.mean_bending(face);
                 Face::new(&patch, woven, rigidity, &places)
             }));
@@ -171,14 +158,12 @@ impl MeshCreases {
     pub fn push(&self, place: impl Fn(u32) -> Vec3, mut add: impl FnMut(u32, Vec3)) {
         for &face in &self.creased {
             let (face, rest) = (&self.faces[face as usize], &self.rest[face as usize]);
-            let Some(face) = face else {
-                continue;
-            };
-            let Some(forces) = face.forces(&face.particles.map_inline(&place), rest) else {
-                continue;
-            };
-            for (particle, force) in face.particles.into_iter().zip(forces) {
-                add(particle, force);
+            if let Some(face) = face
+                && let Some(forces) = face.forces(&face.particles.map_inline(&place), rest)
+            {
+                for (particle, force) in face.particles.into_iter().zip(forces) {
+                    add(particle, force);
+                }
             }
         }
     }
@@ -191,9 +176,7 @@ impl MeshCreases {
         let mut has_flowed = false;
         let faces = self.faces.iter().zip(&mut self.rest);
         for (face, rest) in faces.filter_map(|(face, rest)| Some((face.as_ref()?, rest))) {
-            let at = face
-                .particles
-                .map_inline(|particle| self.places[particle as usize]);
+            let at = (face.particles).map_inline(|particle| self.places[particle as usize]);
             let Some(axes) = axes_of(&at) else {
                 continue;
             };
@@ -212,16 +195,10 @@ impl MeshCreases {
             has_flowed = true;
             let flowed = |kind: usize| Vec3::from(rest[kind]) + flow * trials[kind];
             let flowed: [Vec3; 3] = std::array::from_fn(flowed);
-            let norm = flowed
-                .iter()
-                .map(|of| of.length_squared())
-                .sum::<f32>()
-                .sqrt();
-            let part = if norm > face.most {
-                face.most / norm
-            } else {
-                1.0
-            };
+            let squares = flowed.iter().map(|of| of.length_squared());
+            let norm = squares.sum::<f32>().sqrt();
+            let most = face.most / norm;
+            let part = if norm > face.most { most } else { 1.0 };
             *rest = flowed.map_inline(|of| (part * of).to_array());
         }
         if has_flowed {

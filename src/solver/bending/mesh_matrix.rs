@@ -1,7 +1,5 @@
 //! The matrix of a mesh's bending energy.
 
-use bevy::math::{DVec3, Vec3};
-
 use super::patch::{Patch, RestFace, for_each_row};
 use crate::cloth::{StiffnessFactors, Surface, Woven};
 
@@ -35,8 +33,7 @@ impl MeshMatrix {
         factors: &StiffnessFactors,
         known: Option<KnownMatrix>,
     ) -> Self {
-        let places = surface.rest_positions().iter().copied();
-        let places: Vec<DVec3> = places.map(Vec3::as_dvec3).collect();
+        let places = surface.places_in_f64();
         let known = known.map(|known| (known.matrix, changed(&known, surface, factors)));
         // The matrix with the row of a particle, if that is as before.
         let with_row = |particle: u32| {
@@ -44,9 +41,8 @@ impl MeshMatrix {
             let is_kept = (particle as usize) < matrix.len() && !changed[particle as usize];
             is_kept.then_some(*matrix)
         };
-        let mut known_rest = (known.iter())
-            .flat_map(|(matrix, _)| &matrix.rest)
-            .peekable();
+        let known_rest = known.iter().flat_map(|(matrix, _)| &matrix.rest);
+        let mut known_rest = known_rest.peekable();
         let bending = surface.bending_faces();
         let mut patches = Vec::new();
         if known.is_none() {
@@ -64,9 +60,8 @@ impl MeshMatrix {
             let Some(mut patch) = Patch::new(*face, beside, &places) else {
                 continue;
             };
-            if let Some(warp) = surface
-                .bending_grain(index)
-                .filter(|_| rigidity.ratio != 1.0)
+            if let Some(warp) = surface.bending_grain(index)
+                && rigidity.ratio != 1.0
             {
                 patch.weave(warp.as_dvec3(), rigidity.ratio.into(), &places);
             }

@@ -205,12 +205,11 @@ impl Bending {
 
     /// Takes over rest curvatures of earlier; none if they are not of this surface.
     pub(super) fn recall_creases(&mut self, creases: &[f32]) {
-        match &mut self.of {
-            Kind::Grid(grid) => grid.creases.as_mut().map(|of| of.recall(creases)),
-            of => {
-                (of.mesh_mut().and_then(|mesh| mesh.creases.as_mut())).map(|of| of.recall(creases))
-            }
-        };
+        if let Kind::Grid(grid) = &mut self.of {
+            grid.creases.iter_mut().for_each(|of| of.recall(creases));
+        } else if let Some(mesh) = self.of.mesh_mut() {
+            mesh.creases.iter_mut().for_each(|of| of.recall(creases));
+        }
     }
 
     /// Creases it where it is bent beyond its yield curvature.
@@ -218,10 +217,14 @@ impl Bending {
         let Some(creasing) = &self.creasing else {
             return;
         };
-        match &mut self.of {
-            Kind::Grid(grid) => grid.creases.as_mut().map(|of| of.flow(creasing, blocks)),
-            of => (of.mesh_mut().and_then(|mesh| mesh.creases.as_mut()))
-                .map(|of| of.flow(creasing, blocks)),
-        };
+        if let Kind::Grid(grid) = &mut self.of {
+            grid.creases
+                .iter_mut()
+                .for_each(|of| of.flow(creasing, blocks));
+        } else if let Some(mesh) = self.of.mesh_mut() {
+            mesh.creases
+                .iter_mut()
+                .for_each(|of| of.flow(creasing, blocks));
+        }
     }
 }

@@ -38,9 +38,8 @@ pub(super) fn for_each_row(
     // The patches around each particle, and which of their particles it is.
     let around = Grouped::new(rows, || {
         let all = patches.iter().flat_map(|(patch, _)| patch.particles);
-        let places =
-            (0..patches.len() as u32).flat_map(|patch| (0..6_u32).map(move |at| (patch, at)));
-        all.zip(places)
+        let patches = 0..patches.len() as u32;
+        all.zip(patches.flat_map(|patch| (0..6_u32).map(move |at| (patch, at))))
     });
     const NONE: u32 = u32::MAX;
     let mut numbers: Vec<(u32, f64)> = Vec::new();
@@ -48,16 +47,10 @@ pub(super) fn for_each_row(
     let mut place = vec![NONE; rows];
     for row in 0..rows as u32 {
         for &(patch, a) in around.of(row) {
-            let (
-                Patch {
-                    particles,
-                    curvature,
-                    ..
-                },
-                stiffness,
-            ) = &patches[patch as usize];
-            for (b, column) in particles.iter().enumerate() {
-                let product: f64 = curvature.iter().map(|of| of[a as usize] * of[b]).sum();
+            let (patch, stiffness) = &patches[patch as usize];
+            for (b, column) in patch.particles.iter().enumerate() {
+                let products = patch.curvature.iter().map(|of| of[a as usize] * of[b]);
+                let product: f64 = products.sum();
                 if product == 0.0 {
                     continue;
                 }
@@ -183,9 +176,7 @@ impl Patch {
 
     /// The forces of a face with this index, if it is curved at rest.
     pub fn rest(&self, face: u32, stiffness: f64, places: &[DVec3]) -> Option<RestFace> {
-        let at = self
-            .particles
-            .map_inline(|particle| places[particle as usize]);
+        let at = (self.particles).map_inline(|particle| places[particle as usize]);
         let bent = self.curvature.map_inline(|of| -> DVec3 {
             let each = of.iter().zip(&at);
             // From one corner, so that rounding stays below curvatures.
@@ -198,9 +189,8 @@ impl Patch {
         let corners = [at[0], at[1], at[2]].map_inline(|corner| Vec3A::from(corner.as_vec3()));
         let [x, y, z] = frame(corners)?.map_inline(Vec3::from);
         let forces = std::array::from_fn(|particle| {
-            let force: DVec3 = (0..3)
-                .map(|component| stiffness * self.curvature[component][particle] * bent[component])
-                .sum();
+            let each = self.curvature.iter().zip(bent);
+            let force: DVec3 = each.map(|(of, bent)| stiffness * of[particle] * bent).sum();
             let force = force.as_vec3();
             [x, y, z].map_inline(|axis| force.dot(axis))
         });

@@ -60,11 +60,8 @@ impl Plate {
 
     /// Of the cell whose upper left corner is this particle.
     pub fn twist(&self, row: u32, column: u32) -> f32 {
-        if row + 1 < self.layout.rows && column + 1 < self.layout.columns {
-            self.twist
-        } else {
-            0.0
-        }
+        let is_cell = row + 1 < self.layout.rows && column + 1 < self.layout.columns;
+        if is_cell { self.twist } else { 0.0 }
     }
 
     /// Numbers of a row's particles, block by block; 0 where there is none.

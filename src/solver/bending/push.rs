@@ -41,13 +41,12 @@ impl Push {
             let down = of(&|column| plate.down(row, column));
             let twist = of(&|column| plate.twist(row, column));
             let all = across.into_iter().zip(down).zip(twist);
-            all.map(|((across, down), twist)| [across, down, twist])
-                .collect::<Vec<_>>()
+            let all = all.map(|((across, down), twist)| [across, down, twist]);
+            all.collect::<Vec<_>>()
         });
         let bounds = [0, 1, 2].map_inline(|row| {
-            plate
-                .of_columns(|column| bound(plate, row, column))
-                .collect()
+            let bounds = plate.of_columns(|column| bound(plate, row, column));
+            bounds.collect()
         });
         Self {
             bounds,

@@ -51,9 +51,9 @@ fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) ->
         let cell = first(1) * columns + first(0);
         // Of the two corners in one column, or in one row.
         let mean = |kind: usize| {
-            let is_on =
-                |cell: &[u32; 2]| cells.iter().filter(|of| of[kind] == cell[kind]).count() == 2;
-            let on = cells.iter().zip(corners).filter(|(cell, _)| is_on(cell));
+            let count = |at: u32| cells.iter().filter(|cell| cell[kind] == at).count();
+            let on = cells.iter().zip(corners);
+            let on = on.filter(|(cell, _)| count(cell[kind]) == 2);
             on.map(|(_, corner)| number(corner, kind)).sum::<f64>() / 2.0
         };
         let curvature =
@@ -71,10 +71,9 @@ fn of_grid(grid: &ClothGrid, before: &Surface, after: &Surface, rest: &[f32]) ->
             y.dot(curvature * y),
             std::f64::consts::SQRT_2 * x.dot(curvature * y),
         ];
-        creases.extend(
-            bent.into_iter()
-                .flat_map(|bent| [0.0, 0.0, (side * bent) as f32]),
-        );
+        for bent in bent {
+            creases.extend([0.0, 0.0, (side * bent) as f32]);
+        }
     }
     creases
 }

@@ -51,17 +51,14 @@ impl SurfaceBinding {
     ) -> Result<Self, MeshError> {
         let is_beyond = |at: &Vec3| !(at.is_finite() && at.abs().max_element() < FARTHEST);
         if let Some(vertex) = positions.iter().position(is_beyond) {
-            return Err(MeshError::VertexNotFinite {
-                vertex,
-                position: positions[vertex],
-            });
+            let position = positions[vertex];
+            return Err(MeshError::VertexNotFinite { vertex, position });
         }
         let rest = surface.rest_positions();
         let faces = surface.triangles();
         let mesh = TriMesh::new(rest.to_vec(), faces.to_vec());
-        let mesh = mesh.map_err(|_| MeshError::WithoutArea {
-            triangles: faces.len(),
-        })?;
+        let triangles = faces.len();
+        let mesh = mesh.map_err(|_| MeshError::WithoutArea { triangles })?;
         let mut at_rest = Vec::new();
         surface.normals_at(rest, &mut at_rest);
         let has_tangents = tangents.len() == positions.len() && !tangents.is_empty();
@@ -79,17 +76,12 @@ impl SurfaceBinding {
             }
             let weights = place.barycentric_coordinates().unwrap_or([1.0, 0.0, 0.0]);
             let corners = faces[face as usize];
-            let tangent = if has_tangents {
-                tangents[vertex]
-            } else {
-                Vec3::ZERO
-            };
-            let normal = normals.get(vertex).copied().unwrap_or(Vec3::ZERO);
+            let [tangent, normal] = [tangents, normals].map(|of| of.get(vertex).copied());
+            let tangent = tangent.filter(|_| has_tangents).unwrap_or_default();
+            let normal = normal.unwrap_or_default();
             let places = corners.map(|corner| rest[corner as usize]);
-            let along = [tangent, normal]
-                .into_iter()
-                .find_map(|vector| along(places, vector))
-                .unwrap_or([1.0, 0.0]);
+            let along = along(places, tangent).or_else(|| along(places, normal));
+            let along = along.unwrap_or([1.0, 0.0]);
             let around = corners.map(|corner| at_rest[corner as usize]);
             let frame = Frame::new(places, around, weights, along);
             vertices.push(Bound {
@@ -139,13 +131,8 @@ impl SurfaceBinding {
         tangents: &mut [[f32; 4]],
     ) {
         let tangents = if self.has_tangents { tangents } else { &mut [] };
-        write_eights(
-            &self.eights,
-            [particles, around],
-            positions,
-            normals,
-            tangents,
-        );
+        let around = [particles, around];
+        write_eights(&self.eights, around, positions, normals, tangents);
     }
 }
 

@@ -64,9 +64,8 @@ impl Chains {
         }
         let mut chains = walk.chains;
         chains.retain(|chain| chain.edges.len() > 1);
-        Self {
-            colours: colours(chains, edges, rest.len()),
-        }
+        let colours = colours(chains, edges, rest.len());
+        Self { colours }
     }
 
     /// All chains.

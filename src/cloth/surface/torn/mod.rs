@@ -43,7 +43,10 @@ use super::{
     springs::{face_area, sides},
     triangles::VertexAttribute,
 };
-use crate::cloth::grid::ClothGrid;
+use crate::cloth::{
+    arrays::{chosen, sorted},
+    grid::ClothGrid,
+};
 
 /// The reason why a cloth can't be torn.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
@@ -131,13 +134,9 @@ impl Surface {
     /// The particles of each face, by the sorted particles that they were before anything was torn.
     #[cfg(feature = "mesh")]
     pub(crate) fn faces_by_origin(&self) -> HashMap<[u32; 3], [u32; 3]> {
+        let origin = |face: [u32; 3]| sorted(face.map(|corner| self.origin_of(corner)));
         let faces = self.triangles().iter();
-        let by_origin = |face: &[u32; 3]| {
-            let mut origin = face.map(|corner| self.origin_of(corner));
-            origin.sort_unstable();
-            (origin, *face)
-        };
-        faces.map(by_origin).collect()
+        faces.map(|face| (origin(*face), *face)).collect()
     }
 
     /// Whether a path along edges leads from one face to another, not much longer than the way between them at rest.
@@ -216,10 +215,8 @@ impl Surface {
         let faces = self.triangles();
         for sides in self.incidence().sides.windows(2) {
             if sides[0].ends == sides[1].ends {
-                visit(
-                    sides[0].ends,
-                    [0, 1].map(|at| faces[sides[at].face as usize]),
-                );
+                let beside = [0, 1].map(|at| faces[sides[at].face as usize]);
+                visit(sides[0].ends, beside);
             }
         }
     }
@@ -235,28 +232,19 @@ impl Surface {
             return [1.0 / 3.0; 3];
         }
         let diagonal = self.diagonal_of(face);
-        face.map(|corner| {
-            if diagonal.contains(&corner) {
-                0.25
-            } else {
-                0.5
-            }
-        })
+        face.map(|at| if diagonal.contains(&at) { 0.25 } else { 0.5 })
     }
 
     /// The two ends of a face's longest side, a cell's diagonal, the smaller first.
     fn diagonal_of(&self, face: [u32; 3]) -> [u32; 2] {
-        let square =
-            |[a, b]: [u32; 2]| self.rest[a as usize].distance_squared(self.rest[b as usize]);
-        let longer = |one, other| {
-            if square(one) > square(other) {
-                one
-            } else {
-                other
-            }
+        let square = |ends: &[u32; 2]| {
+            let [a, b] = ends.map(|end| self.rest[end as usize]);
+            a.distance_squared(b)
         };
-        let [one, two, three] = sides(face);
-        longer(longer(one, two), three)
+        let longest = sides(face)
+            .into_iter()
+            .max_by(|a, b| square(a).total_cmp(&square(b)));
+        longest.unwrap_or_default()
     }
 }
 
@@ -273,19 +261,14 @@ impl Torn {
         let mut order: Vec<u32> = (0..self.corners.len() as u32).collect();
         let first = |face: &u32| self.corners[*face as usize].into_iter().min();
         order.sort_by_key(first);
-        let of_face = |face: &u32| self.corners[*face as usize];
-        let faces: Vec<[u32; 3]> = order.iter().map(of_face).collect();
-        let faces = Faces::by_first_corner(&faces, rest.len());
+        let faces = Faces::by_first_corner(&chosen(&self.corners, &order), rest.len());
         let grain = match whole.as_grid() {
             Some(grid) => {
                 let below = whole.rest[grid.columns() as usize];
                 vec![(below - whole.rest[0]).normalize(); order.len()]
             }
             None if whole.grain.is_empty() => Vec::new(),
-            None => order
-                .iter()
-                .map(|face| whole.grain[*face as usize])
-                .collect(),
+            None => chosen(&whole.grain, &order),
         };
         let of_origin = |attribute: &VertexAttribute| {
             VertexAttribute::new(attribute.name(), self.of_origin(attribute.values()))
@@ -324,7 +307,7 @@ impl Torn {
 
     /// Values of the whole surface's particles, for each of this one's.
     fn of_origin<T: Copy>(&self, whole: &[T]) -> Vec<T> {
-        self.origin.iter().map(|at| whole[*at as usize]).collect()
+        chosen(whole, &self.origin)
     }
 
     /// Areas of the particles. Those of the whole surface, but where edges are torn.

@@ -28,15 +28,10 @@ impl Surface {
     /// torn edges moves along the sum of both, which opens both.
     pub(crate) fn parted(&self, places: &[Vec3], parent: impl Fn(u32) -> u32) -> Vec<Vec3> {
         let mut parted = places.to_vec();
-        for around in self
-            .corners_of_split(places, parent)
-            .chunk_by(|a, b| a.edge[0] == b.edge[0])
-        {
-            let size = around
-                .iter()
-                .map(|corner| corner.middle.length())
-                .sum::<f32>()
-                / around.len() as f32;
+        let corners = self.corners_of_split(places, parent);
+        for around in corners.chunk_by(|a, b| a.edge[0] == b.edge[0]) {
+            let sizes = around.iter().map(|corner| corner.middle.length());
+            let size = sizes.sum::<f32>() / around.len() as f32;
             let mut moves: Vec<(u32, Vec3)> = Vec::new();
             let edges = around.chunk_by(|a, b| a.edge == b.edge);
             for sides in edges.flat_map(|faces| faces.windows(2)) {
@@ -68,6 +63,10 @@ impl Surface {
         let parents = || (0..self.len() as u32).map(|child| parent(child) as usize);
         let mut children = vec![0_u32; parents().max().map_or(0, |last| last + 1)];
         parents().for_each(|parent| children[parent] += 1);
+        let across = |way: Vec3, along: Vec3| {
+            let way = way.reject_from_normalized(along.normalize_or_zero());
+            way.normalize_or_zero()
+        };
         let mut corners = Vec::new();
         for face in self.triangles() {
             for at in 0..3 {
@@ -77,15 +76,11 @@ impl Surface {
                 }
                 let others = [face[(at + 1) % 3], face[(at + 2) % 3]];
                 let ways = others.map(|other| places[other as usize] - places[particle as usize]);
-                corners.extend([[0, 1], [1, 0]].map(|[along, third]| {
-                    Corner {
-                        edge: [parent(particle), self.origin_of(others[along])],
-                        particle,
-                        inward: ways[third]
-                            .reject_from_normalized(ways[along].normalize_or_zero())
-                            .normalize_or_zero(),
-                        middle: (ways[0] + ways[1]) / 3.0,
-                    }
+                corners.extend([[0, 1], [1, 0]].map(|[along, third]| Corner {
+                    edge: [parent(particle), self.origin_of(others[along])],
+                    particle,
+                    inward: across(ways[third], ways[along]),
+                    middle: (ways[0] + ways[1]) / 3.0,
                 }));
             }
         }

@@ -86,10 +86,11 @@ fn pieces(surface: &Surface, particle: u32, others: &[u32]) -> Vec<(u32, u32)> {
             if corners.iter().any(|corner| holds(corner) && shares(corner)) {
                 let (a, b) = (pieces[one].1, pieces[two].1);
                 let joined = a.min(b);
-                let of_both = pieces
-                    .iter_mut()
-                    .filter(|(_, piece)| *piece == a || *piece == b);
-                of_both.for_each(|(_, piece)| *piece = joined);
+                for (_, piece) in &mut pieces {
+                    if *piece == a || *piece == b {
+                        *piece = joined;
+                    }
+                }
             }
         }
     }

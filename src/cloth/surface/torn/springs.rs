@@ -3,8 +3,8 @@
 use bevy::math::Vec2;
 
 use crate::cloth::{
-    grid::ClothGrid,
-    spring::SpringKind,
+    arrays::sorted,
+    spring::SpringKind::{self, Bend, Shear, Structural},
     surface::{
         Link, Surface, Torn,
         springs::{Side, face_area, for_each_pair},
@@ -18,7 +18,7 @@ impl Torn {
         let whole = &self.whole;
         let faces = whole.triangles();
         let is_grid = whole.as_grid().is_some();
-        let first_along = (whole.links).partition_point(|link| link.kind != SpringKind::Structural);
+        let first_along = (whole.links).partition_point(|link| link.kind != Structural);
         let (known_across, known_along) = whole.links.split_at(first_along);
         let (mut known_across, mut known_along) = (known_across.iter(), known_along.iter());
         let (mut across, mut along) = (Vec::new(), Vec::new());
@@ -43,10 +43,8 @@ impl Torn {
                 }
                 match known {
                     Some(known) => {
-                        let mut link = Link {
-                            ends: *ends,
-                            ..*known
-                        };
+                        let mut link = *known;
+                        link.ends = *ends;
                         if is_torn {
                             let total: f32 = sides.iter().map(area).sum();
                             link.slenderness *=
@@ -54,10 +52,8 @@ impl Torn {
                         }
                         along.push(link);
                     }
-                    None if is_diagonal => {
-                        across.push(whole.grid_link(SpringKind::Shear, *ends, self, count));
-                    }
-                    None => along.push(whole.grid_link(SpringKind::Structural, *ends, self, count)),
+                    None if is_diagonal => across.push(whole.grid_link(Shear, *ends, self, count)),
+                    None => along.push(whole.grid_link(Structural, *ends, self, count)),
                 }
             }
             for_each_pair(sides, &whole.rest, |one, other| {
@@ -65,11 +61,10 @@ impl Torn {
                 if self.ends(one) != self.ends(other) || is_grid && !is_diagonal {
                     return;
                 }
-                let [a, b] = [one, other].map(|side| self.corner(side.face, side.opposite));
-                let ends = [a.min(b), a.max(b)];
+                let ends = sorted([one, other].map(|side| self.opposite(side)));
                 across.push(match known {
                     Some(known) => Link { ends, ..*known },
-                    None => whole.grid_link(SpringKind::Shear, ends, self, 2),
+                    None => whole.grid_link(Shear, ends, self, 2),
                 });
             });
         }
@@ -87,11 +82,10 @@ impl Torn {
                 let own = Side {
                     ends: self.ends(side),
                     face: side.face,
-                    opposite: self.corner(side.face, side.opposite),
+                    opposite: self.opposite(side),
                 };
-                let beside = all[begin..]
-                    .iter()
-                    .rposition(|known| known.ends == own.ends);
+                let mut beside = all[begin..].iter();
+                let beside = beside.rposition(|known| known.ends == own.ends);
                 all.insert(beside.map_or(all.len(), |at| begin + at + 1), own);
             }
         }
@@ -107,9 +101,7 @@ impl Torn {
 
     /// The ends of a face's side.
     fn ends(&self, side: &Side) -> [u32; 2] {
-        let [a, b] = side.ends;
-        let (a, b) = (self.corner(side.face, a), self.corner(side.face, b));
-        [a.min(b), a.max(b)]
+        sorted(self.ends_of(side))
     }
 }
 
@@ -117,12 +109,12 @@ impl Surface {
     /// A spring of a grid with this number of faces at its side: of a strip that is as wide as a cell for two.
     fn grid_link(&self, kind: SpringKind, ends: [u32; 2], torn: &Torn, faces: u32) -> Link {
         let [a, b] = ends.map(|end| torn.origin[end as usize]);
-        let spacing = self.grid.as_ref().map_or(Vec2::ONE, ClothGrid::spacing);
+        let spacing = self.grid.map_or(Vec2::ONE, |grid| grid.spacing());
         let rest_length = self.rest[a as usize].distance(self.rest[b as usize]);
         let width = match kind {
-            SpringKind::Structural if a.abs_diff(b) == 1 => spacing.y,
-            SpringKind::Structural => spacing.x,
-            SpringKind::Shear | SpringKind::Bend => rest_length,
+            Structural if a.abs_diff(b) == 1 => spacing.y,
+            Structural => spacing.x,
+            Shear | Bend => rest_length,
         };
         Link {
             kind,

@@ -46,7 +46,7 @@ impl Surface {
                 && is_whole(one, other)
             {
                 let [from, to] = torn.ends_of(one);
-                let [left, right] = [one, other].map(|side| torn.opposite_of(side));
+                let [left, right] = [one, other].map(|side| torn.opposite(side));
                 visit(GridStencil::Twist {
                     at: row.min(below) * columns + column.min(beside),
                     particles: [from, to, left, right],
@@ -80,11 +80,12 @@ impl Surface {
 
 impl Torn {
     /// The ends of a side of the whole surface, in their order there.
-    fn ends_of(&self, side: &Side) -> [u32; 2] {
+    pub(super) fn ends_of(&self, side: &Side) -> [u32; 2] {
         side.ends.map(|end| self.corner(side.face, end))
     }
 
-    fn opposite_of(&self, side: &Side) -> u32 {
+    /// The particle of a side's face that is not on the side.
+    pub(super) fn opposite(&self, side: &Side) -> u32 {
         self.corner(side.face, side.opposite)
     }
 }

@@ -1,6 +1,9 @@
 //! Faces and what lies across their edges.
 
-use crate::cloth::surface::springs::{self, Side};
+use crate::cloth::{
+    arrays::sorted,
+    surface::springs::{self, Side},
+};
 
 /// Faces, and the faces across their edges.
 #[derive(Debug, Clone)]
@@ -129,8 +132,4 @@ impl Triangulation {
             }
         }
     }
-}
-
-pub(super) fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

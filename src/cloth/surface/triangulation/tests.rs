@@ -6,9 +6,9 @@ use bevy::math::{DVec3, Vec3};
 
 use super::{
     Triangulation,
-    faces::sorted,
     turning::{ALIKE, Turning},
 };
+use crate::cloth::arrays::sorted;
 use crate::cloth::surface::{Surface, TriangleMesh, springs::sides_of};
 
 const SIDE: u32 = 12;

@@ -7,8 +7,8 @@ use bevy::{
     platform::collections::HashSet,
 };
 
-use super::faces::{Triangulation, sorted};
-use crate::cloth::surface::springs::sides_of;
+use super::faces::Triangulation;
+use crate::cloth::{arrays::sorted, surface::springs::sides_of};
 
 /// Sum of the cotangents of the two angles that an edge is seen under: below −`ALIKE`, the other diagonal is better; within
 /// ±`ALIKE` for both, they are as good. Squares whose vertices are out of place by a fortieth of a side, in x and in y, reach 0.2.

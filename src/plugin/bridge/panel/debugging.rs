@@ -13,7 +13,7 @@ use bevy_egui::egui::{RichText, Ui};
 
 use super::{
     fabric::{show_stiffening, show_weft},
-    row::{choose, line, slide},
+    row::{choose, line, slide, slide_small},
 };
 use crate::{
     cloth::ClothMaterial,
@@ -64,45 +64,25 @@ pub(super) fn show(
 
 fn show_figures(ui: &mut Ui, cloth: &PanelClothItem) {
     let stats = cloth.stats;
+    let mut figure = |name: &str, figure: String, tip: &str| {
+        let text = format!("{name:<13} {figure:>17}");
+        line(ui, RichText::new(text).monospace(), tip);
+    };
+    let particles = cloth.built.surface().len().to_string();
+    figure("particles", particles, "Particles of the cloth");
+    let tip = "Particles that a collider pushed out in the last tick; for small colliders, cells of two triangles";
+    figure("contacts", stats.contacts.to_string(), tip);
     let nodes = cloth.built.tree().len();
-    for (name, figure, tip) in [
-        (
-            "particles",
-            format!("{}", cloth.built.surface().len()),
-            "Particles of the cloth",
-        ),
-        (
-            "contacts",
-            format!("{}", stats.contacts),
-            "Particles that a collider pushed out in the last tick; for small colliders, cells of two triangles",
-        ),
-        (
-            "nodes visited",
-            format!("{} of {nodes}", stats.nodes_visited),
-            "Nodes of the bounding-volume tree that the search of the last tick visited",
-        ),
-        (
-            "tested",
-            format!("{}", stats.leaf_tests),
-            "Particles that the search of the last tick tested against a collider",
-        ),
-        (
-            "stretch",
-            format!("{:.1} %", 100.0 * stats.stretch.structural),
-            "The largest stretch of a spring at the end of the last tick (% of its rest length)",
-        ),
-        (
-            "sub-steps",
-            format!("{}", stats.substeps),
-            "Sub-steps of the last tick; none while the cloth sleeps",
-        ),
-    ] {
-        line(
-            ui,
-            RichText::new(format!("{name:<13} {figure:>17}")).monospace(),
-            tip,
-        );
-    }
+    let visited = format!("{} of {nodes}", stats.nodes_visited);
+    let tip = "Nodes of the bounding-volume tree that the search of the last tick visited";
+    figure("nodes visited", visited, tip);
+    let tip = "Particles that the search of the last tick tested against a collider";
+    figure("tested", stats.leaf_tests.to_string(), tip);
+    let stretch = format!("{:.1} %", 100.0 * stats.stretch.structural);
+    let tip = "The largest stretch of a spring at the end of the last tick (% of its rest length)";
+    figure("stretch", stretch, tip);
+    let tip = "Sub-steps of the last tick; none while the cloth sleeps";
+    figure("sub-steps", stats.substeps.to_string(), tip);
     let found = search_text(stats);
     let tip = format!(
         "{found}\n{} colliders near, {} of them against triangles, {} extra searches within the tick",
@@ -122,11 +102,8 @@ fn search_text(stats: &ClothStats) -> String {
 fn show_gizmos(ui: &mut Ui, cloth: &mut PanelClothItem, commands: &mut Commands) {
     let tree = cloth.built.tree();
     let deepest = tree.levels().len().saturating_sub(1);
-    let mut shown = cloth
-        .show
-        .as_deref()
-        .cloned()
-        .unwrap_or_else(ShowClothGizmos::nothing);
+    let shown = cloth.show.as_deref().cloned();
+    let mut shown = shown.unwrap_or_else(ShowClothGizmos::nothing);
     let was = shown.clone();
     let level = was.levels.map(|[first, _]| first.min(deepest));
     let now = level.map_or_else(|| "none".to_string(), |level| format!("level {level}"));
@@ -171,10 +148,8 @@ fn show_search(ui: &mut Ui, cloth: &mut PanelClothItem) {
 
     let mut narrow_phase = *cloth.narrow_phase;
     let is_it = |(_, each): &&(&'static str, NarrowPhase)| *each == narrow_phase;
-    let now = NarrowPhase::ALL
-        .iter()
-        .find(is_it)
-        .map_or("", |(name, _)| name);
+    let now = NarrowPhase::ALL.iter().find(is_it);
+    let now = now.map_or("", |(name, _)| name);
     choose(
         ui,
         "contact by",
@@ -231,30 +206,21 @@ fn show_settings(ui: &mut Ui, settings: &mut ClothSettings, of_all: ClothGravity
 }
 
 fn show_substeps(ui: &mut Ui, substepping: &mut Substepping) {
-    let choices = [
-        (
-            "automatic",
-            "Sub-steps by the number of particles, the same in each tick",
-            Substepping::Automatic,
-        ),
-        (
-            "fixed",
-            "Your number of sub-steps: each tick costs the same",
-            Substepping::Fixed(20),
-        ),
-        (
-            "tolerance",
-            "Enough sub-steps to keep the stretch below a limit, and at least those of “automatic”",
-            ClothSettings::tolerance(0.01).substepping,
-        ),
-    ];
     ui.horizontal(|ui| {
-        for (name, tip, choice) in choices {
+        let mut choose = |name: &str, tip: &str, choice: Substepping| {
+            // The number of a chosen kind stays.
             let is_chosen = discriminant(substepping) == discriminant(&choice);
             if ui.radio(is_chosen, name).on_hover_text(tip).clicked() && !is_chosen {
                 *substepping = choice;
             }
-        }
+        };
+        let tip = "Sub-steps by the number of particles, the same in each tick";
+        choose("automatic", tip, Substepping::Automatic);
+        let tip = "Your number of sub-steps: each tick costs the same";
+        choose("fixed", tip, Substepping::Fixed(20));
+        let tip =
+            "Enough sub-steps to keep the stretch below a limit, and at least those of “automatic”";
+        choose("tolerance", tip, ClothSettings::tolerance(0.01).substepping);
     });
     match substepping {
         Substepping::Automatic => {}
@@ -280,67 +246,27 @@ fn show_substeps(ui: &mut Ui, substepping: &mut Substepping) {
 }
 
 /// The exact values, in their units.
-fn show_material(ui: &mut Ui, material: &mut ClothMaterial) {
-    line(
-        ui,
-        "material, exact",
-        "The values behind the sliders above. Double-click a number to edit it",
-    );
-    for (value, range, name, tip) in [
-        (
-            &mut material.areal_density,
-            0.01..=5.0,
-            "mass, kg/m²",
-            "Mass per area (kg/m²)",
-        ),
-        (
-            &mut material.stretch_compliance,
-            0.0..=10.0,
-            "stretch, m/N",
-            "Compliance along rows and columns (m/N): how far a square patch grows under 1 N. 0 is rigid",
-        ),
-        (
-            &mut material.shear_compliance,
-            0.0..=10.0,
-            "shear, m/N",
-            "Compliance along both diagonals (m/N). 0 is rigid, infinity is no shear springs",
-        ),
-        (
-            &mut material.bend_rigidity,
-            0.0..=0.01,
-            "bend, N·m",
-            "Flexural rigidity (N·m). 0 bends freely",
-        ),
-    ] {
-        let smallest = *range.end() * 1.0e-7;
-        slide(ui, name, tip, value, range, |slider| {
-            slider.logarithmic(true).smallest_positive(smallest.into())
-        });
-    }
-    show_weft(ui, material);
-    show_stiffening(ui, material);
-    for (value, most, name, tip) in [
-        (
-            &mut material.stretch_damping,
-            0.1,
-            "loss, s",
-            "Damping along springs (s): time in which a free stretch decays. 0 is none",
-        ),
-        (
-            &mut material.damping,
-            0.2,
-            "damping D",
-            "Share of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1",
-        ),
-        (
-            &mut material.friction,
-            2.0,
-            "friction μ",
-            "Coulomb's coefficient of friction against colliders (no unit)",
-        ),
-    ] {
-        slide(ui, name, tip, value, 0.0..=most, |slider| slider);
-    }
+fn show_material(ui: &mut Ui, of: &mut ClothMaterial) {
+    let tip = "The values behind the sliders above. Double-click a number to edit it";
+    line(ui, "material, exact", tip);
+    let tip = "Mass per area (kg/m²)";
+    slide_small(ui, "mass, kg/m²", tip, &mut of.areal_density, 0.01..=5.0);
+    let tip = "Compliance along rows and columns (m/N): how far a square patch grows under 1 N. 0 is rigid";
+    let stretch = &mut of.stretch_compliance;
+    slide_small(ui, "stretch, m/N", tip, stretch, 0.0..=10.0);
+    let tip = "Compliance along both diagonals (m/N). 0 is rigid, infinity is no shear springs";
+    slide_small(ui, "shear, m/N", tip, &mut of.shear_compliance, 0.0..=10.0);
+    let tip = "Flexural rigidity (N·m). 0 bends freely";
+    slide_small(ui, "bend, N·m", tip, &mut of.bend_rigidity, 0.0..=0.01);
+    show_weft(ui, of);
+    show_stiffening(ui, of);
+    let mut slide = |name, tip, value, most| slide(ui, name, tip, value, 0.0..=most, |of| of);
+    let tip = "Damping along springs (s): time in which a free stretch decays. 0 is none";
+    slide("loss, s", tip, &mut of.stretch_damping, 0.1);
+    let tip = "Share of its velocity that the cloth loses in 1/60 s (no unit), 0 to 1";
+    slide("damping D", tip, &mut of.damping, 0.2);
+    let tip = "Coulomb's coefficient of friction against colliders (no unit)";
+    slide("friction μ", tip, &mut of.friction, 2.0);
 }
 
 /// A cloth with everything that the panel shows and sets.

@@ -2,7 +2,7 @@
 
 use bevy_egui::egui::Ui;
 
-use super::row::slide;
+use super::row::{slide, slide_small};
 use crate::cloth::{ClothMaterial, ClothWeft};
 
 /// Whether the cloth differs along its weft, and its values there.
@@ -19,26 +19,11 @@ pub(super) fn show_weft(ui: &mut Ui, material: &mut ClothMaterial) {
     let Some(weft) = &mut material.weft else {
         return;
     };
-    for (value, most, name, tip) in [
-        (
-            &mut weft.stretch_compliance,
-            10.0,
-            "weft, m/N",
-            "Stretch compliance along the weft (m/N). 0 is rigid",
-        ),
-        (
-            &mut weft.bend_rigidity,
-            0.01,
-            "weft, N·m",
-            "Flexural rigidity along the weft (N·m). 0 bends freely",
-        ),
-    ] {
-        slide(ui, name, tip, value, 0.0..=most, |slider| {
-            slider
-                .logarithmic(true)
-                .smallest_positive(f64::from(most) * 1.0e-7)
-        });
-    }
+    let tip = "Stretch compliance along the weft (m/N). 0 is rigid";
+    let stretch = &mut weft.stretch_compliance;
+    slide_small(ui, "weft, m/N", tip, stretch, 0.0..=10.0);
+    let tip = "Flexural rigidity along the weft (N·m). 0 bends freely";
+    slide_small(ui, "weft, N·m", tip, &mut weft.bend_rigidity, 0.0..=0.01);
 }
 
 /// Whether the cloth stiffens as it stretches, and how.

@@ -130,20 +130,14 @@ fn draw_panel(mut contexts: EguiContexts, mut shown: Shown) -> Result {
     Ok(())
 }
 
+type Speed = &'static mut ClothColliderSpeed;
+
 /// Everything that the panel shows and sets.
 #[derive(SystemParam)]
 struct Shown<'w, 's> {
     panel: Res<'w, ClothPanel>,
     cloths: Query<'w, 's, PanelCloth>,
-    speeds: Query<
-        'w,
-        's,
-        (
-            Entity,
-            Option<&'static Name>,
-            &'static mut ClothColliderSpeed,
-        ),
-    >,
+    speeds: Query<'w, 's, (Entity, Option<&'static Name>, Speed)>,
     gravity: ResMut<'w, ClothGravity>,
     running: ResMut<'w, Time<Virtual>>,
     fixed: ResMut<'w, Time<Fixed>>,
@@ -264,15 +258,10 @@ impl Shown<'_, '_> {
             }
             let step = ui.add_enabled(paused, egui::Button::new("Single step"));
             let timestep = self.fixed.timestep();
-            let tip = format!(
-                "One fixed tick: {:.1} ms of simulated time",
-                timestep.as_secs_f64() * 1.0e3
-            );
-            if step
-                .on_hover_text(&tip)
-                .on_disabled_hover_text(tip)
-                .clicked()
-            {
+            let milliseconds = timestep.as_secs_f64() * 1.0e3;
+            let tip = format!("One fixed tick: {milliseconds:.1} ms of simulated time");
+            let step = step.on_hover_text(&tip).on_disabled_hover_text(tip);
+            if step.clicked() {
                 self.fixed.accumulate_overstep(timestep);
             }
         });
@@ -287,10 +276,8 @@ impl Shown<'_, '_> {
         }
         tip += "A cloth at rest sleeps and costs almost nothing.";
         for limit in &limits {
-            tip += &format!(
-                "\nOutside the range that simulates well: {limit} {}.",
-                limit.remedy()
-            );
+            let remedy = limit.remedy();
+            tip += &format!("\nOutside the range that simulates well: {limit} {remedy}.");
         }
         let state = match (limits.is_empty(), cloths, asleep) {
             (false, ..) => "beyond its limits".to_string(),
@@ -344,11 +331,8 @@ fn draw_fabric(ui: &mut Ui, material: &mut impl DetectChangesMut<Inner = ClothMa
     let mut changed = *material.bypass_change_detection();
     let presets = ClothMaterial::PRESETS;
     let (name, preset) = Quality::nearest(&changed);
-    let now = if preset == changed {
-        name.to_string()
-    } else {
-        format!("{name}, changed")
-    };
+    let mark = if preset == changed { "" } else { ", changed" };
+    let now = format!("{name}{mark}");
     choose(
         ui,
         "fabric",

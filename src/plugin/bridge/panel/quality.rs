@@ -69,16 +69,17 @@ impl Quality {
     pub fn set(self, material: &mut ClothMaterial, place: f32) {
         let weft = material.weft.as_mut();
         match self {
-            Self::Stretchy => set_both(
-                &mut material.stretch_compliance,
-                weft.map(|weft| &mut weft.stretch_compliance),
-                STRETCH.value_or_none(place),
-            ),
-            Self::Stiff => set_both(
-                &mut material.bend_rigidity,
-                weft.map(|weft| &mut weft.bend_rigidity),
-                BEND.value_or_none(place),
-            ),
+            Self::Stretchy => {
+                let (warp, value) = (
+                    &mut material.stretch_compliance,
+                    STRETCH.value_or_none(place),
+                );
+                set_both(warp, weft.map(|weft| &mut weft.stretch_compliance), value);
+            }
+            Self::Stiff => {
+                let (warp, value) = (&mut material.bend_rigidity, BEND.value_or_none(place));
+                set_both(warp, weft.map(|weft| &mut weft.bend_rigidity), value);
+            }
             Self::Heavy => material.areal_density = DENSITY.value(place),
             Self::Slippery => material.friction = (1.0 - place / 100.0).max(0.0),
             Self::Damped => material.damping = (DAMPING * place / 100.0).clamp(0.0, 1.0),
@@ -133,11 +134,8 @@ impl Quality {
 /// Sets the value of the warp, and that of the weft in the same ratio; from or to 0, to the same value.
 fn set_both(warp: &mut f32, weft: Option<&mut f32>, value: f32) {
     if let Some(weft) = weft {
-        *weft = if *warp > 0.0 {
-            *weft * (value / *warp)
-        } else {
-            value
-        };
+        let scaled = *weft * (value / *warp);
+        *weft = if *warp > 0.0 { scaled } else { value };
     }
     *warp = value;
 }

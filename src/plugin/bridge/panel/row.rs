@@ -45,6 +45,20 @@ pub(super) fn slide<T: egui::emath::Numeric>(
         .changed()
 }
 
+/// A logarithmic slider of a number that is often small, and may be zero.
+pub(super) fn slide_small(
+    ui: &mut Ui,
+    name: &str,
+    tip: &str,
+    value: &mut f32,
+    range: RangeInclusive<f32>,
+) {
+    let smallest = f64::from(*range.end() * 1.0e-7);
+    slide(ui, name, tip, value, range, |slider| {
+        slider.logarithmic(true).smallest_positive(smallest)
+    });
+}
+
 /// A menu of values with their names and explanations. It leaves a value that is not among them alone.
 pub(super) fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,

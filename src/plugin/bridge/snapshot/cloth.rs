@@ -102,19 +102,16 @@ impl ClothSnapshot {
         self.frame = *frame;
         self.state.copy_from(state);
         let built = world.get::<ClothBuilt>(cloth);
-        self.state.lod.sphere = built
-            .filter(|built| built.matches(&particles))
-            .map(|built| {
-                let root = built.tree().root_sphere(&particles, state.stretch.bound);
-                (root.center.into(), root.radius())
-            });
+        let built = built.filter(|built| built.matches(&particles));
+        self.state.lod.sphere = built.map(|built| {
+            let root = built.tree().root_sphere(&particles, state.stretch.bound);
+            (root.center.into(), root.radius())
+        });
         self.is_written = state.inputs.written != Some(particles.last_changed());
         self.contacts.clone_from(contacts);
         self.mutual.clone_from(&scratch.mutual);
-        match world.get::<ClothTears>(cloth) {
-            Some(tears) => self.tears.clone_from(tears),
-            None => self.tears = ClothTears::none(),
-        }
+        let tears = world.get::<ClothTears>(cloth);
+        (self.tears).clone_from(tears.unwrap_or(&ClothTears::none()));
         Ok(())
     }
 
@@ -132,12 +129,10 @@ impl ClothSnapshot {
         if !is_valid {
             return Err(SnapshotError::Damaged { entity: cloth });
         }
-        let known = world
-            .get::<Cloth>(cloth)
-            .and(world.get::<ClothState>(cloth));
-        known
-            .map(drop)
-            .ok_or(SnapshotError::NoCloth { entity: cloth })
+        let state = world.get::<ClothState>(cloth);
+        let known = state.filter(|_| world.get::<Cloth>(cloth).is_some());
+        let error = SnapshotError::NoCloth { entity: cloth };
+        known.map(drop).ok_or(error)
     }
 
     /// Puts a cloth back to this state. The cloth may never have been simulated, as in an app that has just started,

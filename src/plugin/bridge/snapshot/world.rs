@@ -99,26 +99,21 @@ impl ClothWorldSnapshot {
         }
         self.cloths.truncate(taken);
         let mut colliders = world.query::<(Entity, &ColliderMotion)>();
-        let mut taken = 0;
-        for (entity, motion) in colliders.iter(world) {
-            if taken == self.colliders.len() {
-                self.colliders.push((entity, ColliderMemory::default()));
-            }
-            let (known, memory) = &mut self.colliders[taken];
+        let colliders = colliders.iter(world);
+        let new = || (Entity::PLACEHOLDER, ColliderMemory::default());
+        self.colliders.resize_with(colliders.len(), new);
+        for ((known, memory), (entity, motion)) in self.colliders.iter_mut().zip(colliders) {
             *known = entity;
             motion.remember(memory);
-            taken += 1;
         }
-        self.colliders.truncate(taken);
         let mut roots = world.query::<(Entity, &RootMotion)>();
-        let roots = roots.iter(world);
+        let roots = roots.iter(world).map(|(entity, root)| (entity, root.last));
         self.roots.clear();
-        self.roots
-            .extend(roots.map(|(entity, root)| (entity, root.last)));
+        self.roots.extend(roots);
         let mut orders = world.query::<(Entity, &ClothOrder)>();
-        let orders = orders.iter(world);
+        let orders = orders.iter(world).map(|(entity, order)| (entity, *order));
         self.orders.clear();
-        (self.orders).extend(orders.map(|(entity, order)| (entity, *order)));
+        self.orders.extend(orders);
         self.take_seams(world);
         let islands = world.get_resource::<Islands>();
         self.islands.clear();
@@ -133,28 +128,22 @@ impl ClothWorldSnapshot {
 
     fn take_seams(&mut self, world: &mut World) {
         let mut seams = world.query_filtered::<(Entity, &ClothStitches), With<ClothSeam>>();
-        let mut taken = 0;
-        for (seam, stitches) in seams.iter(world) {
-            if taken == self.seams.len() {
-                self.seams.push((seam, None, Seam::default()));
-            }
-            let (entity, cloths, known) = &mut self.seams[taken];
+        let seams = seams.iter(world);
+        let new = || (Entity::PLACEHOLDER, None, Seam::default());
+        self.seams.resize_with(seams.len(), new);
+        for ((entity, cloths, known), (seam, stitches)) in self.seams.iter_mut().zip(seams) {
             (*entity, *cloths) = (seam, stitches.cloths);
             known.clone_from(&stitches.seam);
-            taken += 1;
         }
-        self.seams.truncate(taken);
     }
 
     /// Takes the transforms of all of them and of these wind zones, of their carriers, and of everything above them.
     fn take_transforms(&mut self, world: &World, zones: &[Entity]) {
         let mut known = EntityHashSet::default();
         self.transforms.clear();
-        let own = (self.cloths.iter().map(|(entity, _)| *entity))
-            .chain(self.colliders.iter().map(|(entity, _)| *entity))
-            .chain(self.roots.iter().map(|(entity, _)| *entity))
-            .chain(zones.iter().copied());
-        let own: Vec<Entity> = own.collect();
+        let own = firsts(&self.cloths).chain(firsts(&self.colliders));
+        let others = firsts(&self.roots).chain(zones.iter().copied());
+        let own: Vec<Entity> = own.chain(others).collect();
         for entity in own {
             let state = world.get::<ClothState>(entity);
             let carriers = state.map_or(&[][..], |state| &state.attachments.targets);
@@ -244,24 +233,17 @@ impl ClothWorldSnapshot {
     /// [`map_entities`](MapEntities::map_entities) takes the snapshot to the entities that have these names in another world.
     pub fn entities(&self) -> impl Iterator<Item = Entity> + '_ {
         let mut seen = EntityHashSet::default();
-        let cloths = self.cloths.iter().map(|(entity, _)| *entity);
-        let colliders = self.colliders.iter().map(|(entity, _)| *entity);
-        let roots = self.roots.iter().map(|(entity, _)| *entity);
-        let transforms = self.transforms.iter().map(|(entity, _)| *entity);
+        let placed = firsts(&self.roots).chain(firsts(&self.transforms));
         let seams = self.seams.iter().map(|(entity, ..)| *entity);
-        (cloths
-            .chain(colliders)
-            .chain(roots)
-            .chain(transforms)
-            .chain(seams))
-        .filter(move |entity| seen.insert(*entity))
+        let own = firsts(&self.cloths).chain(firsts(&self.colliders));
+        let all = own.chain(placed).chain(seams);
+        all.filter(move |entity| seen.insert(*entity))
     }
 
     /// The cloths, each with its entity.
     pub fn cloths(&self) -> impl ExactSizeIterator<Item = (Entity, &ClothSnapshot)> {
-        self.cloths
-            .iter()
-            .map(|(entity, snapshot)| (*entity, snapshot))
+        let cloths = self.cloths.iter();
+        cloths.map(|(entity, snapshot)| (*entity, snapshot))
     }
 }
 
@@ -272,10 +254,12 @@ fn has<C: bevy::ecs::component::Component>(
     entity: Entity,
     component: &'static str,
 ) -> Result<(), SnapshotError> {
-    match world.get::<C>(entity) {
-        Some(_) => Ok(()),
-        None => Err(SnapshotError::Gone { entity, component }),
-    }
+    let known = world.get::<C>(entity).map(drop);
+    known.ok_or(SnapshotError::Gone { entity, component })
+}
+
+fn firsts<T>(all: &[(Entity, T)]) -> impl Iterator<Item = Entity> + '_ {
+    all.iter().map(|(entity, _)| *entity)
 }
 
 /// The joints that a skinned mesh hangs by.

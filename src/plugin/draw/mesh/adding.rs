@@ -75,9 +75,8 @@ pub(super) fn add_meshes(
         let replaced = other.map(|mesh| mesh.0.clone()).or(known);
         let source = replaced.clone().filter(|_| is_asset);
         // The asset that the cloth was made from may have been removed meanwhile, or be in the render world alone.
-        let copy = source
-            .as_ref()
-            .and_then(|source| copy_of(meshes.get(source)?, surface));
+        let asset = source.as_ref().and_then(|source| meshes.get(source));
+        let copy = asset.and_then(|asset| copy_of(asset, surface));
         let (copy, vertices) = copy.unwrap_or_else(|| mesh_of(surface));
         let tangents = Tangents::of(&copy);
         let handle = meshes.add(copy);
@@ -94,11 +93,10 @@ pub(super) fn add_meshes(
         };
         let mut cloth = commands.entity(entity);
         cloth.try_insert((Mesh3d(handle), drawn));
-        match drawings.get_mut(entity) {
-            Ok(mut drawing) => drawing.replace(new),
-            Err(_) => {
-                cloth.try_insert(new);
-            }
+        if let Ok(mut drawing) = drawings.get_mut(entity) {
+            drawing.replace(new);
+        } else {
+            cloth.try_insert(new);
         }
     }
 }

@@ -43,14 +43,15 @@ impl Blend {
             self.offsets.clear();
             if before.len() == drawn.len() {
                 let pairs = before.iter().zip(&*drawn).zip(particles.inverse_masses());
-                self.offsets
-                    .extend(pairs.map(|((before, drawn), inverse_mass)| {
-                        if inverse_mass > 0.0 {
-                            *before - *drawn
-                        } else {
-                            Vec3::ZERO
-                        }
-                    }));
+                let offsets = pairs.map(|((before, drawn), inverse_mass)| {
+                    let offset = *before - *drawn;
+                    if inverse_mass > 0.0 {
+                        offset
+                    } else {
+                        Vec3::ZERO
+                    }
+                });
+                self.offsets.extend(offsets);
             }
         }
         let part = 1.0 - (seconds - self.start) / SECONDS;

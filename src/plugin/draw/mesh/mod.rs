@@ -138,10 +138,8 @@ fn remember_positions(
             // The state before it was carried along.
             let undone = scratch.carried.map(|carried| carried.undone_in(frame));
             if let Some(undone) = undone {
-                drawing
-                    .previous
-                    .iter_mut()
-                    .for_each(|place| *place = undone * *place);
+                let places = drawing.previous.iter_mut();
+                places.for_each(|place| *place = undone * *place);
             }
             drawing.pose.follow(*frame, state, scratch, undone);
             drawing.carriers.follow(*frame, state, scratch);
@@ -178,11 +176,8 @@ fn update_meshes(
     mut meshes: ResMut<Assets<Mesh>>,
     interpolated: bool,
 ) {
-    let fraction = if interpolated {
-        fixed.overstep_fraction().min(1.0)
-    } else {
-        1.0
-    };
+    let overstep = fixed.overstep_fraction().min(1.0);
+    let fraction = if interpolated { overstep } else { 1.0 };
     let seconds = time.elapsed_secs_f64();
     for mut cloth in &mut cloths {
         cloth.update(&around, &mut meshes, fraction, seconds);
@@ -256,21 +251,17 @@ impl DrawQueryItem<'_, '_> {
         let drawn_at = drawn_at.map_while(|target| around.transforms.get(*target).ok());
         drawing.targets.clear();
         (drawing.targets).extend(drawn_at.map(GlobalTransform::affine));
-        let stands = self
-            .state
-            .lod
-            .frozen
-            .map(|stands| match drawing.targets.first() {
-                None => *drawing.frozen.get_or_insert(self.frame.to_entity()),
-                Some(target) => {
-                    let place = rigid(target) * stands.carrier.inverse() * stands.frame;
-                    entity.inverse() * Affine3A::from(place)
-                }
-            });
-        if stands.is_none() {
+        let Some(stands) = self.state.lod.frozen else {
             drawing.frozen = None;
-        }
-        stands
+            return None;
+        };
+        Some(match drawing.targets.first() {
+            None => *drawing.frozen.get_or_insert(self.frame.to_entity()),
+            Some(target) => {
+                let place = rigid(target) * stands.carrier.inverse() * stands.frame;
+                entity.inverse() * Affine3A::from(place)
+            }
+        })
     }
 
     /// Places the drawn particles in their entity's frame.

@@ -15,7 +15,6 @@ use bevy::{
 use crate::{
     cloth::ClothParticles,
     plugin::{
-        authoring::Attached,
         frame::{ClothFrame, Shift, rigid},
         state::{ClothBuilt, ClothScratch, ClothState},
     },
@@ -44,9 +43,8 @@ impl Carriers {
         self.now.frame = frame;
         self.now.targets.clear();
         let entities = state.attachments.targets.iter().copied();
-        self.now
-            .targets
-            .extend(entities.zip(scratch.targets.iter().copied()));
+        let targets = entities.zip(scratch.targets.iter().copied());
+        self.now.targets.extend(targets);
         // After a teleport, or in the first tick, there is no place before.
         if scratch.teleports || !self.is_known {
             self.before.clone_from(&self.now);
@@ -121,48 +119,36 @@ impl Weights {
         self.own.clear();
         let own = (0..particles.len()).filter(|&index| carrier_of[index] == Some(targets));
         self.own.extend(own.map(|index| index as u32));
-        let distances: Vec<Vec<f32>> = (0..self.carriers)
-            .map(|carrier| {
-                let sources =
-                    (0..carrier_of.len()).filter(|&index| carrier_of[index] == Some(carrier));
-                let found = built
-                    .surface()
-                    .graph()
-                    .distances(sources.map(|index| index as u32));
-                found.into_iter().map(|(distance, _)| distance).collect()
-            })
-            .collect();
+        let distances_of = |carrier: usize| -> Vec<f32> {
+            let all = 0..carrier_of.len() as u32;
+            let sources = all.filter(|at| carrier_of[*at as usize] == Some(carrier));
+            let found = built.surface().graph().distances(sources);
+            found.into_iter().map(|(distance, _)| distance).collect()
+        };
+        let distances: Vec<Vec<f32>> = (0..self.carriers).map(distances_of).collect();
         let nearest = |index: usize| {
             let of_carriers = distances.iter().map(|distance| distance[index]);
             of_carriers.fold(f32::INFINITY, f32::min)
         };
         // Particles without a path to a carrier are not moved.
-        let reached = (0..particles.len())
-            .map(nearest)
-            .filter(|distance| distance.is_finite());
+        let all = (0..particles.len()).map(nearest);
+        let reached = all.filter(|distance| distance.is_finite());
         let farthest = reached.fold(0.0, f32::max);
         self.of_particle.clear();
         for index in 0..particles.len() {
             let nearest = nearest(index);
             // All of it beside the pins, nothing at the particle that is farthest from them.
-            let fades = if nearest > 0.0 {
-                1.0 - nearest / farthest
-            } else {
-                1.0
-            };
+            let far = nearest / farthest;
+            let fades = 1.0 - if nearest > 0.0 { far } else { 0.0 };
             let share = |distance: f32| {
-                let ratio = if distance > 0.0 {
-                    nearest / distance
-                } else {
-                    1.0
-                };
-                ratio * ratio
+                let ratio = nearest / distance;
+                if distance > 0.0 { ratio * ratio } else { 1.0 }
             };
             let shares = || distances.iter().map(|distance| share(distance[index]));
             let sum: f32 = shares().sum();
             let weights = shares().map(|share| share / sum * fades);
-            self.of_particle
-                .extend(weights.map(|weight| if weight.is_finite() { weight } else { 0.0 }));
+            let weights = weights.map(|weight| if weight.is_finite() { weight } else { 0.0 });
+            self.of_particle.extend(weights);
         }
     }
 }
@@ -194,19 +180,14 @@ impl Drawn<'_> {
             for index in 0..=self.state.attachments.given.len() {
                 if let Some(correction) = self.correction(carriers, index) {
                     if !is_corrected {
-                        carriers
-                            .weights
-                            .follow(self.built, self.particles, self.state);
+                        let weights = &mut carriers.weights;
+                        weights.follow(self.built, self.particles, self.state);
                         is_corrected = true;
                     }
                     // In the cloth's frame, one carrier after the other: each moves its own part.
                     let by = frame.isometry().inverse() * correction * frame.isometry();
-                    let Weights {
-                        carriers: count,
-                        of_particle,
-                        ..
-                    } = &carriers.weights;
-                    let weights = of_particle.chunks_exact(*count);
+                    let of = &carriers.weights;
+                    let weights = of.of_particle.chunks_exact(of.carriers);
                     for (place, weights) in drawn.iter_mut().zip(weights) {
                         let weight = weights.get(index).copied().unwrap_or_default();
                         *place += (by * *place - *place) * weight;
@@ -258,17 +239,11 @@ impl Drawn<'_> {
             drawn[particle as usize] = scale_out.transform_point3(position);
         }
         let from_world = self.entity.affine().inverse();
-        for Attached {
-            particle,
-            attachment,
-            offset,
-        } in &self.state.attachments.attached
-        {
-            if let (Some(target), Some(place)) = (
-                self.targets.get(*attachment),
-                drawn.get_mut(*particle as usize),
-            ) {
-                *place = from_world.transform_point3(target.transform_point3(*offset));
+        for of in &self.state.attachments.attached {
+            if let Some(target) = self.targets.get(of.attachment)
+                && let Some(place) = drawn.get_mut(of.particle as usize)
+            {
+                *place = from_world.transform_point3(target.transform_point3(of.offset));
             }
         }
     }

@@ -41,9 +41,8 @@ impl DrawnPose {
         self.to.clone_from(&state.pose.places);
         self.frame = frame;
         if let Some(undone) = undone {
-            self.from
-                .iter_mut()
-                .for_each(|place| *place = undone * *place);
+            let places = self.from.iter_mut();
+            places.for_each(|place| *place = undone * *place);
         }
     }
 

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::tube;
-use crate::cloth::{Surface, TriangleMesh};
+use crate::cloth::{Surface, TriangleMesh, sorted};
 
 /// A mesh of a surface at rest, with the vertices that it was made from, and texture coordinates and tangents where it has
 /// them.
@@ -32,13 +32,11 @@ pub(super) fn mesh_of(surface: &Surface) -> (Mesh, TornVertices) {
     let normals: Vec<_> = particles.map(|of| normal(of).to_array()).collect();
     let corners = surface.triangles().iter().flatten();
     let indices = corners.map(|corner| vertex_of[*corner as usize]).collect();
-    let mut mesh = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::default(),
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-    .with_inserted_indices(Indices::U32(indices));
+    let usage = RenderAssetUsages::default();
+    let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, usage)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_indices(Indices::U32(indices));
     // Surfaces that the game gives as triangles have none.
     if surface.uvs().len() == count {
         let uvs: Vec<_> = surface.uvs().iter().map(Vec2::to_array).collect();
@@ -84,18 +82,15 @@ impl TornVertices {
             return Self::default();
         }
         let vertices = surface.vertices();
-        let whole = (0..vertices).map(|vertex| surface.particle_of_vertex(vertex));
-        let mut particles: Vec<u32> = whole
-            .map(|of| of.map_or(u32::MAX, |of| of as u32))
-            .collect();
+        let particle = |vertex| surface.particle_of_vertex(vertex);
+        let whole = (0..vertices).map(|vertex| particle(vertex).map_or(u32::MAX, |of| of as u32));
+        let mut particles: Vec<u32> = whole.collect();
         let faces = surface.faces_by_origin();
         let mut origins: Vec<u32> = (0..vertices as u32).collect();
         let mut split: HashMap<(u32, u32), u32> = HashMap::default();
         for triangle in &mut triangles {
             let of_vertices = triangle.map(|vertex| particles[vertex as usize]);
-            let mut sorted = of_vertices;
-            sorted.sort_unstable();
-            let Some(face) = faces.get(&sorted) else {
+            let Some(face) = faces.get(&sorted(of_vertices)) else {
                 continue;
             };
             for (vertex, whole) in triangle.iter_mut().zip(of_vertices) {
@@ -135,7 +130,7 @@ pub(in crate::plugin::draw) fn with_triangles<'a>(
 pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVertices)> {
     let TriangleMesh {
         positions,
-        triangles,
+        mut triangles,
         normals,
         ..
     } = TriangleMesh::of_asset(asset).ok()?;
@@ -150,22 +145,15 @@ pub(super) fn copy_of(asset: &Mesh, surface: &Surface) -> Option<(Mesh, TornVert
     // And the bounds of a skeleton are not the cloth's.
     mesh.set_skinned_mesh_bounds(None);
     if normals.is_empty() {
-        mesh.insert_attribute(
-            Mesh::ATTRIBUTE_NORMAL,
-            vec![Vec3::Y.to_array(); positions.len()],
-        );
+        let up = vec![Vec3::Y.to_array(); positions.len()];
+        mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, up);
     }
-    let moves = |triangle: &&[u32; 3]| {
-        let mut corners = triangle.iter();
-        corners.all(|corner| surface.particle_of_vertex(*corner as usize).is_some())
-    };
-    if triangles.iter().filter(moves).count() < triangles.len() {
-        mesh = with_triangles(&mesh, triangles.iter().filter(moves));
+    let count = triangles.len();
+    let moves = |corner: &u32| surface.particle_of_vertex(*corner as usize).is_some();
+    triangles.retain(|triangle| triangle.iter().all(moves));
+    if triangles.len() < count {
+        mesh = with_triangles(&mesh, triangles.iter());
     }
-    let triangles = triangles
-        .into_iter()
-        .filter(|triangle| moves(&triangle))
-        .collect();
     let vertices = TornVertices::split(&mut mesh, surface, triangles);
     Some((mesh, vertices))
 }
@@ -213,10 +201,9 @@ impl Tangents {
         let Ok(TriangleMesh { triangles, uvs, .. }) = TriangleMesh::of_asset(mesh) else {
             return Self::default();
         };
-        let exists =
-            |triangle: &[u32; 3]| triangle.iter().all(|corner| (*corner as usize) < uvs.len());
+        let exists = |corner: &u32| (*corner as usize) < uvs.len();
         let has_tangents = mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT).is_ok();
-        if !has_tangents || !triangles.iter().all(exists) {
+        if !has_tangents || !triangles.iter().flatten().all(exists) {
             return Self::default();
         }
         let parts = |triangle: &[u32; 3]| {
@@ -235,11 +222,7 @@ impl Tangents {
 
     /// Writes the tangents, if there are any.
     pub fn write(&mut self, vectors: Vectors) {
-        let Self {
-            triangles,
-            parts,
-            sums,
-        } = self;
+        let (triangles, parts, sums) = (&self.triangles, &self.parts, &mut self.sums);
         if triangles.is_empty() {
             return;
         }
@@ -250,9 +233,9 @@ impl Tangents {
             for (triangle, parts) in triangles.iter().zip(parts) {
                 let [a, b, c] = triangle.map(|corner| Vec3::from(places[corner as usize]));
                 let along = (b - a) * parts[0] + (c - a) * parts[1];
-                triangle
-                    .iter()
-                    .for_each(|corner| sums[*corner as usize] += along);
+                for corner in triangle {
+                    sums[*corner as usize] += along;
+                }
             }
         }
         let (Some(normals), Some(tangents)) = (vectors.normals, vectors.tangents) else {

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use crate::{
-    cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh},
+    cloth::{ClothError, Surface, SurfaceBinding, TriangleMesh, add_face_normals},
     plugin::{
         draw::mesh::{MeshDrawing, Vectors, with_triangles},
         frame::{rigid, unusable},
@@ -56,13 +56,12 @@ impl Driven {
         mesh.remove_attribute(Mesh::ATTRIBUTE_JOINT_WEIGHT);
         let own: Vec<_> = normals.iter().map(Vec3::to_array).collect();
         mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, own);
-        let mut tangents: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT) {
-            Ok(VertexAttributeValues::Float32x4(values)) => {
-                let tangent = |value: &[f32; 4]| Vec4::from(*value).truncate();
-                values.iter().map(tangent).collect()
-            }
-            _ => Vec::new(),
+        let tangents: &[[f32; 4]] = match mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT) {
+            Ok(VertexAttributeValues::Float32x4(values)) => values,
+            _ => &[],
         };
+        let tangent = |value: &[f32; 4]| Vec4::from(*value).truncate();
+        let mut tangents: Vec<Vec3> = tangents.iter().map(tangent).collect();
         let to_surface = Affine3A::from(rigid(&cloth.affine()).inverse()) * place.affine();
         let for_normals = to_surface.matrix3.inverse().transpose();
         if !(to_surface.is_finite() && for_normals.is_finite()) {
@@ -171,16 +170,10 @@ fn without_gaps(
 
 /// The normals of a mesh that has none: of its faces at each vertex, by their areas.
 fn normals_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    for triangle in triangles {
-        let corners = triangle.map(|corner| positions.get(corner as usize));
-        if let [Some(a), Some(b), Some(c)] = corners {
-            let normal = (*b - *a).cross(*c - *a);
-            for corner in triangle {
-                normals[*corner as usize] += normal;
-            }
-        }
-    }
+    let count = positions.len();
+    let exists = |triangle: &&[u32; 3]| triangle.iter().all(|at| (*at as usize) < count);
+    let mut normals = vec![Vec3::ZERO; count];
+    add_face_normals(triangles.iter().filter(exists), positions, &mut normals);
     let unit = |normal: Vec3| normal.normalize_or(Vec3::Y);
     normals.into_iter().map(unit).collect()
 }

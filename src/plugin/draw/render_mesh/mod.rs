@@ -300,26 +300,16 @@ fn update(
     for (mut state, place, visibility) in &mut driven {
         let is_hidden = visibility.is_some_and(|visibility| !visibility.get());
         let RenderMeshState { handle, bound, .. } = &mut *state;
-        let Some(Bound {
-            cloth,
-            surface,
-            driven,
-        }) = bound
-        else {
-            continue;
-        };
-        let Ok((cloth, at)) = driving.get(*cloth) else {
-            continue;
-        };
-        if is_hidden || !cloth.is_of(surface) {
-            continue;
-        }
         let place = place.copied().unwrap_or_default();
-        let at = at.copied().unwrap_or_default();
-        if driven.follow(surface, cloth, &place, &at)
+        if let Some(to) = bound
+            && let Ok((cloth, at)) = driving.get(to.cloth)
+            && !is_hidden
+            && cloth.is_of(&to.surface)
+            && let at = at.copied().unwrap_or_default()
+            && to.driven.follow(&to.surface, cloth, &place, &at)
             && let Some(mut mesh) = meshes.get_mut(&*handle)
         {
-            driven.write(&mut mesh);
+            to.driven.write(&mut mesh);
         }
     }
 }
