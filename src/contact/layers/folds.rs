@@ -4,7 +4,7 @@
 //! touch, and none touches itself. Two neighbours are a pair only if all windows that have both are folded. A window is measured again once
 //! any two points of its patches may have come nearer by its slack.
 
-use bevy::math::{Vec3, Vec3A, Vec4, Vec4Swizzles};
+use bevy::math::{Vec3A, Vec4, Vec4Swizzles};
 
 use super::{
     compare::OF_REST, flattened::Scratch, motion::Motion, near_patches::Meets,
@@ -30,6 +30,7 @@ pub(super) struct Folds {
     references: Vec<Vec4>,
     /// Whether two neighbours are a pair.
     are_pairs: Vec<bool>,
+    has_new: bool,
     #[cfg_attr(feature = "serialize", serde(skip))]
     scratch: Scratch,
 }
@@ -39,29 +40,19 @@ pub(super) struct Folds {
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Window {
     is_folded: bool,
+    /// Whether it was measured in this sub-step: its references are those at the end of it.
+    is_new: bool,
     /// How far its points may move against each other before it is measured again (m): −∞ until it is first measured. ∞ for one of a cloth
     /// that does not touch itself, which is not folded, and for one that cannot be laid flat, which is.
     slack: f32,
-    /// The [odometer's](Motion::odometer) reading before which that is not used up (m).
-    until: f32,
 }
 
 impl Window {
-    fn new(is_folded: bool, slack: f32, odometer: f32) -> Self {
-        Self {
-            is_folded,
-            slack,
-            until: odometer + slack,
-        }
-    }
-
-    /// Measures one with its particles at these places, at this reading of the odometer. It has to unfold as far as it is folded before
-    /// it is measured again.
+    /// Measures one with its particles at these places. It has to unfold as far as it is folded before it is measured again.
     fn measured(
         cloth: &Participant,
         window: usize,
         places: &[Vec3A],
-        odometer: f32,
         scratch: &mut Scratch,
     ) -> Self {
         let thickness = cloth.settings.thickness;
@@ -78,24 +69,21 @@ impl Window {
                     .clamp(MEASURED_AGAIN[0] * thickness, MEASURED_AGAIN[1] * thickness);
             }
         }
-        Self::new(is_folded, slack, odometer)
+        Self {
+            is_folded,
+            is_new: true,
+            slack,
+        }
     }
-}
-
-/// The middle of these patches (m).
-#[inline]
-fn middle(patches: &[u32], ends: &[Vec4]) -> Vec3 {
-    let each = patches.iter().map(|&patch| ends[patch as usize]);
-    each.sum::<Vec4>().xyz() / patches.len() as f32
 }
 
 /// Upper bound of the approach of any two points of these patches since their references (m).
 #[inline]
 fn used(patches: &[u32], ends: &[Vec4], references: &[Vec4]) -> f32 {
-    let middle = middle(patches, ends).extend(0.0);
-    let each = patches.iter().map(|&patch| ends[patch as usize]);
-    let used = each.zip(references).map(|(end, reference)| {
-        let moved = end - middle - *reference;
+    let each = || patches.iter().map(|&patch| ends[patch as usize]);
+    let middle = each().sum::<Vec4>().xyz() / patches.len() as f32;
+    let used = each().zip(references).map(|(end, reference)| {
+        let moved = end - middle.extend(0.0) - *reference;
         Vec3A::from_vec4(moved).length() + moved.w
     });
     // A window at NaN is measured.
@@ -120,7 +108,14 @@ impl Folds {
             next[0] += windows.count();
             next[1] += windows.member_count();
             next[2] += windows.pair_count();
-            self.windows.resize(next[0], Window::new(false, slack, 0.0));
+            self.windows.resize(
+                next[0],
+                Window {
+                    is_folded: false,
+                    is_new: false,
+                    slack,
+                },
+            );
         }
         self.firsts.push(next);
         self.references.clear();
@@ -130,11 +125,7 @@ impl Folds {
     }
 
     /// Measures what is used from zero again.
-    pub fn reset_odometer(&mut self, cloths: &[Participant], motion: &Motion) {
-        let odometer = motion.odometer();
-        for window in &mut self.windows {
-            window.until -= odometer;
-        }
+    pub fn begin_tick(&mut self, cloths: &[Participant], motion: &Motion) {
         for (index, cloth) in cloths.iter().enumerate() {
             let [_, first_reference, _] = self.firsts[index];
             let patches = &motion.patches[motion.firsts[index][1] as usize..];
@@ -146,73 +137,71 @@ impl Folds {
         }
     }
 
+    /// Ends the sub-step: what was measured in it is used up from here on.
+    pub fn pass(&mut self, cloths: &[Participant], motion: &Motion) {
+        if !std::mem::take(&mut self.has_new) {
+            return;
+        }
+        for (index, cloth) in cloths.iter().enumerate() {
+            let [first, first_reference, _] = self.firsts[index];
+            let starts = &motion.patches[motion.firsts[index][1] as usize..];
+            for window in 0..self.firsts[index + 1][0] - first {
+                if !std::mem::take(&mut self.windows[first + window].is_new) {
+                    continue;
+                }
+                let (from, patches) = cloth.sheet.windows().patches_in(window);
+                let references = &mut self.references[first_reference + from..];
+                let each = || patches.iter().map(|&patch| &starts[patch as usize]);
+                let middle = each().map(|patch| patch.start).sum::<Vec3A>() / patches.len() as f32;
+                for (reference, patch) in references.iter_mut().zip(each()) {
+                    *reference = (patch.start - middle).extend(patch.used_before());
+                }
+            }
+        }
+    }
+
     /// Measures the windows that may be folded at the end of the sub-step, but for a `reserve` (m). Calls `found` with
     /// neighbours that become pairs. Returns the approach of any two particles before others do (m).
     pub fn renew(
         &mut self,
         cloths: &[Participant],
-        motion: &mut Motion,
+        motion: &Motion,
         reserve: f32,
         mut found: impl FnMut([u32; 2], usize),
     ) -> f32 {
-        let odometer = motion.odometer();
         let mut left = f32::INFINITY;
         for (index, cloth) in cloths.iter().enumerate() {
-            let [first, ..] = self.firsts[index];
-            let first_patch = motion.firsts[index][1];
+            let [first, first_reference, _] = self.firsts[index];
+            let [first_particle, first_patch, ..] = motion.firsts[index];
+            let places = &motion.end[first_particle as usize..];
+            let ends = &motion.ends[first_patch as usize..];
             for window in 0..self.firsts[index + 1][0] - first {
-                let was = self.windows[first + window];
-                let mut free = was.until - odometer;
-                // Not so for NaN.
-                let has_left = free > reserve;
-                if !has_left {
-                    free = self.look(cloths, motion, [index, window], reserve);
-                }
                 let state = self.windows[first + window];
-                if state.is_folded && !was.is_folded {
-                    self.pair(cloth, index, window, |[a, b], pair| {
-                        found([first_patch + a, first_patch + b], pair);
-                    });
-                } else if !state.is_folded {
+                if state.slack == f32::INFINITY {
+                    continue;
+                }
+                let (from, patches) = cloth.sheet.windows().patches_in(window);
+                let used = used(patches, ends, &self.references[first_reference + from..]);
+                let mut free = state.slack - used;
+                // Not so for NaN.
+                let has_slack = free > reserve;
+                if state.is_new || !has_slack {
+                    let measured = Window::measured(cloth, window, places, &mut self.scratch);
+                    self.windows[first + window] = measured;
+                    self.has_new = true;
+                    if measured.is_folded && !state.is_folded {
+                        self.pair(cloth, index, window, |[a, b], pair| {
+                            found([first_patch + a, first_patch + b], pair);
+                        });
+                    }
+                    free = measured.slack;
+                }
+                if !self.windows[first + window].is_folded {
                     left = left.min(free);
                 }
             }
         }
         left
-    }
-
-    /// Measures a window of a cloth if its patches have used up its slack, but for a `reserve` (m). Returns what it has (m).
-    fn look(
-        &mut self,
-        cloths: &[Participant],
-        motion: &mut Motion,
-        [index, window]: [usize; 2],
-        reserve: f32,
-    ) -> f32 {
-        let odometer = motion.odometer();
-        let [first, first_reference, _] = self.firsts[index];
-        let [first_particle, first_patch, ..] = motion.firsts[index];
-        let (from, patches) = cloths[index].sheet.windows().patches_in(window);
-        for patch in patches {
-            motion.measure(cloths, first_patch + patch);
-        }
-        let references = &mut self.references[first_reference + from..];
-        let ends = &motion.ends[first_patch as usize..];
-        let state = &mut self.windows[first + window];
-        let free = state.slack - used(patches, ends, references);
-        // Not so for NaN.
-        if free > reserve {
-            state.until = odometer + free;
-            return free;
-        }
-        let places = &motion.end[first_particle as usize..];
-        *state = Window::measured(&cloths[index], window, places, odometer, &mut self.scratch);
-        let middle = middle(patches, ends);
-        for (reference, &patch) in references.iter_mut().zip(patches) {
-            let used = motion.patches[(first_patch + patch) as usize].used_after();
-            *reference = (ends[patch as usize].xyz() - middle).extend(used);
-        }
-        state.slack
     }
 
     /// Makes pairs of the neighbours that no other window keeps apart than this one, which has just folded.

@@ -134,11 +134,9 @@ impl Members {
 
     /// Puts their positions among those of all particles.
     pub fn put(&self, cloths: &[Participant], motion: &mut Motion) {
-        let mut farthest = 0.0_f32;
         for (member, state) in self.of.iter().zip(&self.states) {
-            farthest = farthest.max(motion.put(cloths, member.particle, state.place));
+            motion.put(cloths, member.particle, state.place);
         }
-        motion.note(farthest);
     }
 
     /// Writes changes back to the particles. Marks the affected cloths, and updates the means of their pushes.

@@ -91,6 +91,9 @@ const MOST_SUBSTEPS: f32 = 16.0;
 const MOST_STOPPED: u32 = 8;
 const TICKS_OFF: u32 = 8;
 
+/// Deviation of a patch from its reference, as a fraction of the smallest thickness, from which on it gets a new one.
+const REFERENCE: f32 = 0.05;
+
 /// Contact of cloths with themselves and with each other, from tick to tick. Can be dropped at any time.
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
@@ -142,7 +145,7 @@ impl MutualContact {
         }
         let is_new = !(self.is_known && self.motion.is_of(cloths));
         if is_same && !is_new && !was_lost {
-            self.reset_odometer(cloths);
+            self.near.begin_tick(cloths, &mut self.motion);
             self.tighten();
             let approach = self.last.begin_tick(cloths);
             if approach == 0.0 || approach <= self.last.free {
@@ -150,8 +153,11 @@ impl MutualContact {
             }
             // Something else has moved them.
             self.motion.read(cloths);
-            self.motion.pass();
-            self.motion.stay();
+            self.motion.measure_all();
+            self.motion.measure(cloths);
+            self.motion.pass(cloths, REFERENCE * thinnest(cloths));
+            // Both ends of the sub-step are here.
+            self.motion.end.clone_from(&self.motion.start);
         } else {
             let has_stayed = self.stopped > 0 && self.last.passed.are_pins_still(cloths);
             let begins = is_new || (was_lost && !has_stayed);
@@ -175,17 +181,8 @@ impl MutualContact {
             Some(free) => self.last.free = free,
             None => self.lose(),
         }
-        self.near.begins = false;
-        // Both ends of the look were here.
-        self.motion.pass();
+        self.near.pass(cloths, &self.motion);
         self.tighten();
-    }
-
-    /// Begins a tick with what was used and the odometer at 0: sums of years would round.
-    fn reset_odometer(&mut self, cloths: &[Participant]) {
-        self.near.reset_odometer(cloths, &self.motion);
-        self.boxes.reset_odometer(&self.motion);
-        self.motion.reset_odometer();
     }
 
     /// Lowers the limit of work by what began inside each other.
@@ -259,6 +256,8 @@ impl MutualContact {
         }
         self.last.wait = 0;
         self.motion.read(cloths);
+        self.motion.measure_all();
+        self.motion.measure(cloths);
         let is_done = self.keep_apart(cloths, &meets, dt);
         let pushed = self.members.farthest_push();
         self.mean_pushes.pass();
@@ -271,11 +270,12 @@ impl MutualContact {
         }
         self.counts.lost += u32::from(!self.counts.is_certain);
         let thinnest = thinnest(cloths);
-        self.motion.pass();
+        let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
+        self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
+        self.motion.pass(cloths, REFERENCE * thinnest);
+        self.near.pass(cloths, &self.motion);
         self.last.reserve = 0.0;
         if !self.contacts.pairs.is_empty() {
-            let pace = self.last.passed.approach(cloths) / self.last.waited as f32;
-            self.counts.motion = self.counts.motion.max(0.5 * pace / thinnest);
             let are_resting = self.members.are_resting(dt);
             self.last.hold(thinnest, pace, are_resting);
         }
@@ -331,6 +331,7 @@ impl MutualContact {
                 break;
             }
             self.members.put(cloths, &mut self.motion);
+            self.motion.measure_changed(cloths);
             self.last.free = f32::NEG_INFINITY;
         }
         self.counts.is_certain || self.counts.work > 0
@@ -362,7 +363,7 @@ impl MutualContact {
             &mut counts.work,
         );
         let slack = near.look(cloths, motion, last.reserve, counts)?;
-        Some(slack.min(unfolded).min(clearance))
+        Some(slack.min(unfolded).min(2.0 * clearance))
     }
 
     /// Stops the cloths for the rest of the tick, where they were last apart. Keeps nothing apart after many such ticks, so

@@ -9,23 +9,10 @@
 //!
 //! `used` only grows: by the deviation from the reference, however often that is taken anew. Trembling around the
 //! reference does not add up. Patches that move alike use nothing up.
-//!
-//! A patch is measured only for those who ask for it. They ask once the [odometer](Motion::odometer), which bounds the approach of
-//! any two points, has reached a reading of theirs: in calm cloth hardly any do.
 
 use bevy::math::{Vec3A, Vec4};
 
-use super::{
-    bounds::Bounds,
-    participant::{Participant, thinnest},
-};
-use crate::cloth::larger;
-
-/// Deviation of a patch from its reference, as a fraction of the smallest thickness, from which on it gets a new one.
-const REFERENCE: f32 = 0.05;
-
-/// The first sub-step's number. Patches that were measured in none have 0, those in the last one of another tick 1.
-const FIRST: u32 = 2;
+use super::{bounds::Bounds, participant::Participant};
 
 /// A patch at the beginning and at the end of a sub-step.
 #[derive(Debug, Default, Clone, Copy)]
@@ -39,9 +26,7 @@ pub(super) struct PatchMotion {
     /// Deviations of particles from earlier references in all, and from this one at the beginning and at the end (m).
     pub earlier: f32,
     deviation: [f32; 2],
-    /// The sub-step in which it was last measured, and whether its particles were put elsewhere since.
-    #[cfg_attr(feature = "serialize", serde(skip))]
-    measured: u32,
+    /// Whether its particles were put elsewhere since it was measured.
     #[cfg_attr(feature = "serialize", serde(skip))]
     is_changed: bool,
 }
@@ -57,12 +42,6 @@ impl PatchMotion {
     #[inline]
     pub fn used_before(&self) -> f32 {
         self.earlier - self.deviation[0]
-    }
-
-    /// Zero of [`used`](Self::used) for a measurement at the end of the sub-step (m).
-    #[inline]
-    pub fn used_after(&self) -> f32 {
-        self.earlier - self.deviation[1]
     }
 
     /// Upper bound of all that its particles had moved against each other before the sub-step (m).
@@ -99,23 +78,18 @@ pub(super) struct Motion {
     /// Positions at the beginning of the sub-step, up to which layers are apart, and at its end (m).
     pub start: Vec<Vec3A>,
     pub end: Vec<Vec3A>,
-    /// As they were last [measured](Self::measure).
     pub patches: Vec<PatchMotion>,
     /// The middle of each patch at its end, and what its particles have [used](PatchMotion::used), side by side.
     #[cfg_attr(feature = "serialize", serde(skip))]
     pub ends: Vec<Vec4>,
     /// Offsets of each patch's particles at its reference (m).
     offsets: Vec<Vec3A>,
-    /// Deviation of a patch from its reference from which on it gets a new one (m).
-    most_deviation: f32,
+    /// The patches whose particles were put elsewhere.
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    changed: Vec<u32>,
     /// The motion that all had in common, in all and in the sub-step (m).
     pub drift: Vec3A,
     pub drifted: Vec3A,
-    /// The number of the sub-step in the tick, from [`FIRST`] on.
-    substep: u32,
-    /// Upper bounds of the approach of any two points in earlier sub-steps of the tick, and in this one (m).
-    approached: f32,
-    approach: f32,
 }
 
 impl Motion {
@@ -141,32 +115,14 @@ impl Motion {
             );
         }
         self.firsts.push(next);
-        self.ends.clear();
-        self.ends.resize(self.patches.len(), Vec4::ZERO);
-        // The first measurement replaces it.
+        (self.drift, self.drifted) = (Vec3A::ZERO, Vec3A::ZERO);
+        self.read(cloths);
+        self.start.clone_from(&self.end);
         self.offsets.clear();
         self.offsets.resize(next[2] as usize, Vec3A::ZERO);
-        self.read_places(cloths);
-        self.start.clone_from(&self.end);
-        (self.drift, self.drifted) = (Vec3A::ZERO, Vec3A::ZERO);
-        (self.substep, self.approached, self.approach) = (FIRST, 0.0, 0.0);
-        self.most_deviation = REFERENCE * thinnest(cloths);
-    }
-
-    /// Begins a tick with the odometer and what patches have used at 0.
-    pub fn reset_odometer(&mut self) {
-        for patch in &mut self.patches {
-            patch.earlier = 0.0;
-            // Only its end may still be true.
-            patch.measured = u32::from(patch.measured + 1 == self.substep);
-        }
-        (self.substep, self.approached, self.approach) = (FIRST, 0.0, 0.0);
-    }
-
-    /// Upper bound of the approach of any two points since the beginning of the tick (m). It only grows.
-    #[inline]
-    pub fn odometer(&self) -> f32 {
-        self.approached + self.approach
+        self.measure(cloths);
+        // Each patch gets a reference.
+        self.pass(cloths, f32::NEG_INFINITY);
     }
 
     /// Whether the numbers of particles match.
@@ -185,7 +141,8 @@ impl Motion {
         (cloth, (particle - self.firsts[cloth][0]) as usize)
     }
 
-    fn read_places(&mut self, cloths: &[Participant]) {
+    /// Reads the particles' positions at the end of the sub-step.
+    pub fn read(&mut self, cloths: &[Participant]) {
         self.end.clear();
         for cloth in cloths {
             let blocks = cloth.particles.blocks();
@@ -197,107 +154,93 @@ impl Motion {
         }
     }
 
-    /// Reads the particles' positions at the end of the sub-step, and finds how far they have moved, together and against each other.
-    pub fn read(&mut self, cloths: &[Participant]) {
-        self.read_places(cloths);
-        self.most_deviation = REFERENCE * thinnest(cloths);
-        let each = || self.end.iter().zip(&self.start);
-        let sum = each().map(|(end, start)| *end - *start).sum::<Vec3A>();
+    /// Measures the motion that all have in common.
+    pub fn measure_all(&mut self) {
+        let each = self.end.iter().zip(&self.start);
+        let sum = each.map(|(end, start)| *end - *start).sum::<Vec3A>();
         // One particle that is not finite leaves the others without a common motion.
         let sum = if sum.is_finite() { sum } else { Vec3A::ZERO };
-        self.drifted = sum / self.end.len().max(1) as f32;
-        self.drift += self.drifted;
-        let squares = each().map(|(end, start)| (*end - *start - self.drifted).length_squared());
-        // NaN is never the farthest.
-        self.approach = 2.0 * squares.fold(0.0, |most, of| larger(of, most)).sqrt();
+        let drifted = sum / self.end.len().max(1) as f32;
+        self.drift += drifted - self.drifted;
+        self.drifted = drifted;
     }
 
-    /// Puts a particle elsewhere at the end of the sub-step. Returns how far (m).
+    /// Puts a particle elsewhere at the end of the sub-step.
     #[inline]
-    pub fn put(&mut self, cloths: &[Participant], particle: u32, place: Vec3A) -> f32 {
+    pub fn put(&mut self, cloths: &[Participant], particle: u32, place: Vec3A) {
         let before = std::mem::replace(&mut self.end[particle as usize], place);
         if before == place {
-            return 0.0;
+            return;
         }
         let (cloth, local) = self.cloth_of(particle);
         for patch in cloths[cloth].sheet.patches_of(local) {
-            self.patches[(self.firsts[cloth][1] + patch) as usize].is_changed = true;
-        }
-        before.distance(place)
-    }
-
-    /// Takes into account that particles were put elsewhere, by no more than this distance (m).
-    pub fn note(&mut self, farthest: f32) {
-        self.approach += 2.0 * farthest;
-    }
-
-    /// Measures a patch at the beginning and at the end of the sub-step, unless it is measured.
-    #[inline]
-    pub fn measure(&mut self, cloths: &[Participant], index: u32) {
-        let patch = &self.patches[index as usize];
-        if patch.measured != self.substep || patch.is_changed {
-            self.measure_anew(cloths, index as usize);
-        }
-    }
-
-    fn measure_anew(&mut self, cloths: &[Participant], index: usize) {
-        let patch = &mut self.patches[index];
-        let [first_particle, first_patch, first_offset, _] = self.firsts[patch.cloth as usize];
-        let (sheet, own) = (
-            &cloths[patch.cloth as usize].sheet,
-            index as u32 - first_patch,
-        );
-        let particles = sheet.particles_of(own);
-        let first = (first_offset + sheet.first_of(own)) as usize;
-        let offsets = &mut self.offsets[first..first + particles.len()];
-        let [starts, ends] = [&self.start, &self.end].map(|of| &of[first_particle as usize..]);
-        if patch.measured != self.substep {
-            let is_known = patch.measured + 1 == self.substep && !patch.is_changed;
-            (patch.start, patch.deviation[0]) = if is_known {
-                (patch.end, patch.deviation[1])
-            } else {
-                middle_and_deviation(starts, particles, offsets)
-            };
-            // Also for NaN.
-            let is_near = patch.deviation[0] <= self.most_deviation;
-            if !is_near {
-                patch.half = Vec3A::ZERO;
-                for (&particle, offset) in particles.iter().zip(&mut *offsets) {
-                    *offset = starts[particle as usize] - patch.start;
-                    patch.half = patch.half.max(offset.abs());
-                }
-                patch.earlier += patch.deviation[0];
-                patch.deviation[0] = 0.0;
+            let patch = self.firsts[cloth][1] + patch;
+            if !std::mem::replace(&mut self.patches[patch as usize].is_changed, true) {
+                self.changed.push(patch);
             }
-            patch.measured = self.substep;
         }
-        patch.is_changed = false;
-        (patch.end, patch.deviation[1]) = middle_and_deviation(ends, particles, offsets);
-        self.ends[index] = patch.end.extend(patch.used());
     }
 
-    /// Ends the sub-step: the next one begins where it ended.
-    pub fn pass(&mut self) {
+    /// Measures the patches whose particles were put elsewhere.
+    pub fn measure_changed(&mut self, cloths: &[Participant]) {
+        let changed = std::mem::take(&mut self.changed);
+        for &patch in &changed {
+            self.patches[patch as usize].is_changed = false;
+            self.measure_patch(cloths, patch as usize);
+        }
+        self.changed = changed;
+        self.changed.clear();
+    }
+
+    /// Measures each patch at the end of the sub-step.
+    pub fn measure(&mut self, cloths: &[Participant]) {
+        self.ends.resize(self.patches.len(), Vec4::ZERO);
+        (0..self.patches.len()).for_each(|patch| self.measure_patch(cloths, patch));
+    }
+
+    fn measure_patch(&mut self, cloths: &[Participant], index: usize) {
+        let state = &mut self.patches[index];
+        let [first_particle, first_patch, first_offset, _] = self.firsts[state.cloth as usize];
+        let sheet = &cloths[state.cloth as usize].sheet;
+        let particles = sheet.particles_of(index as u32 - first_patch);
+        let first = (first_offset + sheet.first_of(index as u32 - first_patch)) as usize;
+        let places = &self.end[first_particle as usize..];
+        let each = particles.iter().map(|&particle| places[particle as usize]);
+        state.end = each.clone().sum::<Vec3A>() / particles.len() as f32;
+        let squares = each
+            .zip(&self.offsets[first..])
+            .map(|(place, offset)| (place - state.end - *offset).length_squared());
+        state.deviation[1] = squares.fold(0.0, f32::max).sqrt();
+        self.ends[index] = state.end.extend(state.used());
+    }
+
+    /// Ends the sub-step: the next one begins where it ended. Patches that deviate from their references by more than
+    /// `most` (m) get new ones.
+    pub fn pass(&mut self, cloths: &[Participant], most: f32) {
         std::mem::swap(&mut self.start, &mut self.end);
         self.drifted = Vec3A::ZERO;
-        self.approached += self.approach;
-        self.approach = 0.0;
-        self.substep += 1;
+        for (index, patch) in self.patches.iter_mut().enumerate() {
+            patch.start = patch.end;
+            patch.deviation[0] = patch.deviation[1];
+            // Also for NaN.
+            if patch.deviation[0] <= most {
+                continue;
+            }
+            let [first_particle, first_patch, first_offset, _] = self.firsts[patch.cloth as usize];
+            let (sheet, own) = (
+                &cloths[patch.cloth as usize].sheet,
+                index as u32 - first_patch,
+            );
+            let particles = sheet.particles_of(own);
+            let first = (first_offset + sheet.first_of(own)) as usize;
+            let offsets = &mut self.offsets[first..first + particles.len()];
+            patch.half = Vec3A::ZERO;
+            for (&particle, offset) in particles.iter().zip(offsets) {
+                *offset = self.start[(first_particle + particle) as usize] - patch.start;
+                patch.half = patch.half.max(offset.abs());
+            }
+            patch.earlier += patch.deviation[0];
+            patch.deviation = [0.0; 2];
+        }
     }
-
-    /// Begins a sub-step in which nothing has moved yet.
-    pub fn stay(&mut self) {
-        self.end.clone_from(&self.start);
-    }
-}
-
-/// The middle of some particles (m), and how far one of them is at most from its offset.
-#[inline]
-fn middle_and_deviation(places: &[Vec3A], particles: &[u32], offsets: &[Vec3A]) -> (Vec3A, f32) {
-    let each = particles.iter().map(|&particle| places[particle as usize]);
-    let middle = each.clone().sum::<Vec3A>() / particles.len() as f32;
-    let squares = each
-        .zip(offsets)
-        .map(|(place, offset)| (place - middle - *offset).length_squared());
-    (middle, squares.fold(0.0, f32::max).sqrt())
 }

@@ -131,7 +131,7 @@ impl NearFeatures {
         boxes: &mut PatchBoxes,
         has_left: bool,
         among: &Meets<impl Fn(usize, usize) -> bool>,
-        motion: &mut Motion,
+        motion: &Motion,
         reserve: f32,
         work: &mut usize,
     ) -> f32 {
@@ -176,16 +176,23 @@ impl NearFeatures {
         });
     }
 
-    /// Measures what is used from zero again.
-    pub fn reset_odometer(&mut self, cloths: &[Participant], motion: &Motion) {
-        let odometer = motion.odometer();
-        self.folds.reset_odometer(cloths, motion);
+    /// Measures what is used from zero again: sums of years would round.
+    pub fn begin_tick(&mut self, cloths: &[Participant], motion: &mut Motion) {
+        self.folds.begin_tick(cloths, motion);
         for pair in &mut self.pairs {
             for patch in pair.of {
                 pair.since -= motion.patches[patch as usize].earlier;
             }
-            pair.due -= odometer;
         }
+        for patch in &mut motion.patches {
+            patch.earlier = 0.0;
+        }
+    }
+
+    /// Ends the sub-step, or the first look.
+    pub fn pass(&mut self, cloths: &[Participant], motion: &Motion) {
+        self.begins = false;
+        self.folds.pass(cloths, motion);
     }
 
     /// Looks at the patches that have used up what they may, but for a `reserve` (m). Returns the approach of any two
@@ -193,12 +200,11 @@ impl NearFeatures {
     pub fn look(
         &mut self,
         cloths: &[Participant],
-        motion: &mut Motion,
+        motion: &Motion,
         reserve: f32,
         counts: &mut Counts,
     ) -> Option<f32> {
-        let mut left = self.find_due(cloths, motion, reserve);
-        let motion = &*motion;
+        let mut left = self.find_due(motion, reserve);
         let due = std::mem::take(&mut self.due);
         if !due.is_empty() {
             self.comparison.clear(motion);
@@ -250,9 +256,7 @@ impl NearFeatures {
                 }
             }
             self.has_changed |= had_contacts || pair.has_contacts();
-            let until = pair.until - place.used;
-            pair.due = motion.odometer() + until;
-            left = left.min(until);
+            left = left.min(pair.until - place.used);
             if self.listed > MOST_LISTED * motion.end.len() {
                 counts.work = 0;
             }
@@ -283,27 +287,17 @@ impl NearFeatures {
 
     /// Finds the patches that have used up what they may, but for a `reserve` (m). Returns the least that others may
     /// still use (m).
-    fn find_due(&mut self, cloths: &[Participant], motion: &mut Motion, reserve: f32) -> f32 {
-        let odometer = motion.odometer();
+    fn find_due(&mut self, motion: &Motion, reserve: f32) -> f32 {
         self.due.clear();
         self.soon.clear();
         let (mut left, mut soon) = (f32::INFINITY, f32::INFINITY);
         let mut is_contact_due = false;
-        for (index, pair) in self.pairs.iter_mut().enumerate() {
-            let has_contacts = pair.has_contacts();
-            let soon_below = if has_contacts { SOON * pair.near } else { 0.0 };
-            let mut until = pair.due - odometer;
-            // Not so for NaN.
-            let is_late = until >= soon_below.max(reserve);
-            if !is_late {
-                pair.of.iter().for_each(|of| motion.measure(cloths, *of));
-                until = pair.until - pair.used(motion);
-                pair.due = odometer + until;
-            }
+        for (index, pair) in self.pairs.iter().enumerate() {
+            let until = pair.until - pair.used(motion);
             if until < reserve {
                 self.due.push(index as u32);
-                is_contact_due |= has_contacts;
-            } else if has_contacts && until < soon_below {
+                is_contact_due |= pair.has_contacts();
+            } else if pair.has_contacts() && until < SOON * pair.near {
                 self.soon.push(index as u32);
                 soon = soon.min(until);
             } else {

@@ -20,8 +20,6 @@ pub(super) struct PatchBoxes {
     boxes: Vec<Bounds>,
     /// Of the nodes of each cloth's tree.
     nodes: Vec<Vec<Bounds>>,
-    /// The [odometer's](Motion::odometer) reading up to which each stays in its box (m).
-    stay_until: Vec<f32>,
     /// The patches that have left their boxes, and those boxes.
     left: Vec<(u32, Bounds)>,
     #[cfg_attr(feature = "serialize", serde(skip))]
@@ -51,8 +49,6 @@ impl PatchBoxes {
     pub fn reset(&mut self, cloths: &[Participant], patches: usize) {
         self.boxes.clear();
         self.boxes.resize(patches, Bounds::EMPTY);
-        self.stay_until.clear();
-        self.stay_until.resize(patches, f32::NEG_INFINITY);
         self.nodes.resize_with(cloths.len(), Vec::new);
         for (nodes, cloth) in self.nodes.iter_mut().zip(cloths) {
             nodes.clear();
@@ -60,35 +56,13 @@ impl PatchBoxes {
         }
     }
 
-    /// Takes into account that the odometer begins at 0 again.
-    pub fn reset_odometer(&mut self, motion: &Motion) {
-        let odometer = motion.odometer();
-        self.stay_until
-            .iter_mut()
-            .for_each(|until| *until -= odometer);
-    }
-
-    /// Makes boxes for patches that have left theirs, but for a `reserve` (m). Returns whether there are any, and the approach of any two
-    /// particles before a patch leaves its box (m).
-    pub fn renew(
-        &mut self,
-        cloths: &[Participant],
-        motion: &mut Motion,
-        reserve: f32,
-    ) -> (bool, f32) {
-        let odometer = motion.odometer();
+    /// Makes boxes for patches that have left theirs, but for a `reserve` (m). Returns whether there are any, and how far
+    /// any patch may move before it leaves its box (m).
+    pub fn renew(&mut self, cloths: &[Participant], motion: &Motion, reserve: f32) -> (bool, f32) {
         let (before, after) = (motion.drift - motion.drifted, motion.drift);
         self.left.clear();
         let mut free = f32::INFINITY;
-        let each = self.boxes.iter_mut().zip(&mut self.stay_until);
-        for (index, (clearance, stay_until)) in each.enumerate() {
-            let left = *stay_until - odometer;
-            if left >= reserve {
-                free = free.min(left);
-                continue;
-            }
-            motion.measure(cloths, index as u32);
-            let patch = &motion.patches[index];
+        for (index, (patch, clearance)) in motion.patches.iter().zip(&mut self.boxes).enumerate() {
             let cloth = &cloths[patch.cloth as usize];
             let half = Vec3A::splat(0.5 * cloth.settings.thickness);
             let at_end = patch.bounds_at_end();
@@ -97,12 +71,9 @@ impl PatchBoxes {
                 max: at_end.max - after + half,
             };
             let inside = (at_end.min - clearance.min).min(clearance.max - at_end.max);
-            // Two patches that move towards each other do half of it each.
-            let left = 2.0 * inside.min_element();
             // False for NaN.
-            if left >= reserve {
-                *stay_until = odometer + left;
-                free = free.min(left);
+            if inside.min_element() >= reserve {
+                free = free.min(inside.min_element());
                 continue;
             }
             self.left.push((index as u32, *clearance));
@@ -114,8 +85,7 @@ impl PatchBoxes {
             let moved = patch.end - patch.start - motion.drifted;
             let ahead = moved * AHEAD;
             let around = ROOM * cloth.sheet.surface().spacing().shortest;
-            *stay_until = odometer + 2.0 * around;
-            free = free.min(2.0 * around);
+            free = free.min(around);
             let both = at_start.join(&at_end);
             *clearance = Bounds {
                 min: both.min - around + ahead.min(Vec3A::ZERO),

@@ -36,8 +36,6 @@ pub(super) struct PatchPair {
     /// near features, whether contacts or left out (m).
     pub until: f32,
     pub near: f32,
-    /// The [odometer's](Motion::odometer) reading before which that has not happened (m).
-    pub due: f32,
     /// The listed features.
     pub first: u32,
     pub count: u32,
@@ -118,7 +116,6 @@ impl PatchPair {
             slack: f32::NEG_INFINITY,
             until: f32::NEG_INFINITY,
             near: 0.0,
-            due: f32::NEG_INFINITY,
             first: 0,
             count: 0,
             contacts: 0,

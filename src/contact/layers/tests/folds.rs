@@ -291,15 +291,18 @@ fn what_folds_and_unfolds_is_found() {
                 continue;
             }
             if step % 4 == 0 {
-                contact.reset_odometer(&of);
+                contact.near.begin_tick(&of, &mut contact.motion);
             }
             contact.counts.work = usize::MAX;
             contact.motion.read(&of);
+            contact.motion.measure_all();
+            contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let of_both = near_features(&contact).into_iter();
             let own = |of: Vec<u32>| -> Vec<u32> { of.iter().map(|at| at - before).collect() };
             let contacts: HashSet<Feature> = of_both.map(|(a, b)| (own(a), own(b))).collect();
-            contact.motion.pass();
+            contact.motion.pass(&of, 0.05 * thickness);
+            contact.near.pass(&of, &contact.motion);
             pairs.push(contact.pairs());
             let mut met = 0;
             let reach = f64::from(thickness) - ROUNDING;

@@ -85,10 +85,13 @@ fn no_pair_of_a_torn_cloth_is_lost() {
             }
             contact.counts.work = usize::MAX;
             contact.motion.read(&of);
+            contact.motion.measure_all();
+            contact.motion.measure(&of);
             contact.look(&of, |_, _| true).expect("not too much work");
             let listed: HashSet<Feature> = contact.near.all().map(feature).collect();
             let contacts = near_features(&contact);
-            contact.motion.pass();
+            contact.motion.pass(&of, 0.05 * thickness);
+            contact.near.pass(&of, &contact.motion);
             brute.near(&places(&cloths[0]), reach, |feature, apart| {
                 let name = || format!("step {step} of {seed}: {feature:?}, {apart} m apart");
                 let [first, second] = [&feature.0, &feature.1].map(|of| {
