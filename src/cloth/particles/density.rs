@@ -1,6 +1,6 @@
 //! The masses that a material gives to particles.
 
-use crate::cloth::{material::ClothMaterial, quantity::QuantityError, surface::Surface};
+use crate::cloth::{Allowed, QuantityError, material::ClothMaterial, surface::Surface};
 
 /// Factors of a cloth's areal density.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,14 +60,7 @@ impl DensityFactors {
         let ends = masses.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], mass| {
             [least.min(mass), most.max(mass)]
         });
-        for mass in ends {
-            QuantityError::check(
-                mass,
-                |mass| (1.0e-15..1.0e15).contains(&mass),
-                "the mass of a particle (kg)",
-                "from 10⁻¹⁵ to 10¹⁵",
-            )?;
-        }
-        Ok(())
+        let usable = |mass: f32| (1.0e-15..1.0e15).contains(&mass);
+        Allowed(usable, "from 10⁻¹⁵ to 10¹⁵").check("the mass of a particle (kg)", ends)
     }
 }

@@ -10,7 +10,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::quantity::QuantityError;
+use super::quantity::{Allowed, QuantityError};
 
 pub use binding::SkinError;
 pub(crate) use binding::Skinning;
@@ -160,8 +160,7 @@ impl ClothSkin {
     /// # Errors
     /// [`QuantityError`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        let share = |v: f32| (0.0..=1.0).contains(&v);
-        QuantityError::check(self.blend, share, "the skin's blend", "from 0 to 1")?;
+        Allowed::SHARE.check("the skin's blend", [self.blend])?;
         let positive = |v: f32| v > 0.0;
         let name = "the skin's teleport distance (m)";
         QuantityError::check(self.teleport_distance, positive, name, "positive")?;
