@@ -8,7 +8,7 @@ use bevy::{
 
 use super::{
     error::ClothError,
-    quantity::QuantityError,
+    quantity::Allowed,
     skin::ClothPaint,
     surface::{GrainError, Surface, TriangleMesh},
 };
@@ -74,16 +74,14 @@ impl ClothGrain {
     /// # Errors
     /// [`GrainError::Axis`] for an axis without a direction; [`GrainError::NeedsUvs`] where there is neither an
     /// axis nor a texture; [`GrainError::FoldedUvs`] for the first face without an area in the texture;
-    /// [`QuantityError`] and [`PaintError`](crate::cloth::PaintError) of its turn.
+    /// [`QuantityError`](crate::cloth::QuantityError) and [`PaintError`](crate::cloth::PaintError) of its turn.
     pub fn apply(&self, surface: Surface, mesh: &TriangleMesh) -> Result<Surface, ClothError> {
         if surface.as_grid().is_some() {
             return Ok(surface);
         }
         let quantity = "turn of the grain (rad)";
         let turns = self.turn.values(&surface, quantity)?;
-        for turn in &turns {
-            QuantityError::check(*turn, f32::is_finite, quantity, "finite")?;
-        }
+        Allowed::FINITE.check(quantity, turns.iter().copied())?;
         let grain = match self.axis {
             Some(axis) => {
                 let direction = axis.try_normalize().ok_or(GrainError::Axis { axis })?;

@@ -10,7 +10,7 @@ use super::{
     material::ClothMaterial, particles::ClothParticles, quantity::QuantityError,
     springs::StiffnessFactors, stress::Stress, surface::Surface, tears::ClothTears,
 };
-use crate::cloth::arrays::MapInline;
+use crate::cloth::{Allowed, arrays::MapInline};
 
 /// Tears a cloth where its threads bear more than their strength. A tear begins at the thread that is overloaded most, and runs
 /// across it from tick to tick, an edge at a time.
@@ -67,16 +67,11 @@ impl ClothTearing {
     /// # Errors
     /// [`QuantityError`].
     pub fn validate(&self, material: &ClothMaterial) -> Result<(), QuantityError> {
-        let is_positive = |value: f32| value > 0.0;
-        for strength in [self.strength, self.weft_strength] {
-            let quantity = "strength of a cloth that tears (N/m)";
-            QuantityError::check(strength, is_positive, quantity, "positive")?;
-        }
-        for compliance in material.stretch_compliances() {
-            let quantity = "stretch compliance of a cloth that tears (m/N)";
-            QuantityError::check(compliance, is_positive, quantity, "positive")?;
-        }
-        Ok(())
+        let positive = Allowed(|value| value > 0.0, "positive");
+        let strengths = [self.strength, self.weft_strength];
+        positive.check("strength of a cloth that tears (N/m)", strengths)?;
+        let quantity = "stretch compliance of a cloth that tears (m/N)";
+        positive.check(quantity, material.stretch_compliances())
     }
 }
 

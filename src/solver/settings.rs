@@ -10,7 +10,7 @@ use super::{
     step::TimeOrder,
     substepping::{MAX_SUBSTEPS, Substepping},
 };
-use crate::cloth::QuantityError;
+use crate::cloth::{Allowed, QuantityError};
 
 /// Settings of a cloth's simulation. They may change at any time.
 #[derive(Component, Reflect, Debug, Clone, Copy, PartialEq)]
@@ -94,10 +94,8 @@ impl ClothSettings {
         let range = |v: f32| (1.0..=MAX_SUBSTEPS as f32).contains(&v);
         QuantityError::check(substeps as f32, range, "sub-steps", "from 1 to 10,000")?;
         QuantityError::not_negative(self.particle_radius, "particle radius (m)")?;
-        for value in self.gravity.unwrap_or(Vec3::ZERO).to_array() {
-            QuantityError::check(value, f32::is_finite, "gravity (m/s²)", "finite")?;
-        }
-        Ok(())
+        let gravity = self.gravity.unwrap_or(Vec3::ZERO);
+        Allowed::FINITE.check("gravity (m/s²)", gravity.to_array())
     }
 }
 

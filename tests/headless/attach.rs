@@ -289,3 +289,18 @@ fn a_copy_of_a_figure_has_its_own_target() {
         assert!(cape == figures[0].1 || first.length() < 1.0e-5, "{first}");
     }
 }
+
+/// Of those that are so called, one that is nowhere is no target.
+#[test]
+fn a_target_without_a_place_is_not_meant() {
+    let mut app = app();
+    let pole = Name::new("pole");
+    app.world_mut().spawn(pole.clone());
+    app.world_mut().spawn((pole, Transform::default()));
+    let attached = ClothAttachments::new([(Pin::Row(0), "pole")]);
+    let cloth = (Cloth::new(6, 6, 0.1), Pins::none(), attached);
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 16);
+    assert_eq!(app.world().get::<ClothFault>(cloth), None);
+    assert_eq!(position(&app, cloth, (0, 0)).y, 0.0);
+}

@@ -294,6 +294,48 @@ fn a_collider_nowhere() {
     );
 }
 
+/// Larger than what can be computed with; only a plane has no end.
+#[test]
+fn a_collider_beyond_measure() {
+    for collider in [
+        ClothCollider::ball(1.0e13),
+        ClothCollider::capsule(0.1, f32::MAX),
+    ] {
+        expect_bad_quantity(collider, |app, entity| {
+            change::<ClothCollider>(app, entity, |collider| *collider = ClothCollider::plane());
+        });
+    }
+}
+
+/// A collider at fault is not there; mended, it is there at once, and has not come from where it was.
+#[test]
+fn a_collider_at_fault_is_not_met() {
+    let mut app = app();
+    let cloth = app.world_mut().spawn(Cloth::default()).id();
+    let place = Transform::from_xyz(0.75, -1.0, 9.0);
+    let ball = (ClothCollider::ball(0.3), place);
+    let ball = app.world_mut().spawn(ball).id();
+    let touches = |app: &App| {
+        let contacts = app.world().get::<ClothContacts>(cloth).expect("contacts");
+        contacts.with(ball).is_some()
+    };
+    let put = |app: &mut App, z: f32| {
+        change::<Transform>(app, ball, |place| place.translation.z = z);
+        tick(app, 1);
+    };
+    tick(&mut app, 2);
+    put(&mut app, f32::NAN);
+    put(&mut app, -9.0);
+    let lowest = particles(&app, cloth).positions().map(|at| at.z);
+    let lowest = lowest.fold(0.0, f32::min);
+    assert!(lowest > -0.1, "it has swept the cloth along: {lowest}");
+    put(&mut app, f32::NAN);
+    put(&mut app, 0.1);
+    assert!(touches(&app));
+    put(&mut app, f32::NAN);
+    assert!(!touches(&app));
+}
+
 #[test]
 fn gravity_that_is_not_finite() {
     let mut app = app();

@@ -345,6 +345,91 @@ fn a_hand_lets_go_of_what_is_not_there_any_more() {
     }
 }
 
+/// Nor does it hold what goes away with the target that it is attached to.
+#[test]
+fn a_hand_lets_go_where_a_carrier_teleports() {
+    let mut app = app();
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let attached = ClothAttachments::new([(Pin::Row(0), pole)]);
+    let cloth = (Cloth::new(10, 10, 0.05), Pins::none(), attached);
+    let cloth = app.world_mut().spawn(cloth).id();
+    tick(&mut app, 1);
+    let hand = take(&mut app, cloth, 55);
+    tick(&mut app, 2);
+    assert!(pinned(&app, cloth).contains(&55));
+    let away = (ClothTeleport, Transform::from_xyz(30.0, 0.0, 0.0));
+    app.world_mut().entity_mut(pole).insert(away);
+    tick(&mut app, 2);
+    assert!(app.world().get::<ClothGrab>(hand).is_none());
+    assert!(!pinned(&app, cloth).contains(&55));
+    assert!(stats(&app, cloth).stretch.structural < 0.1);
+}
+
+/// However far it may pull, a hand stops where the springs at its particle are stretched by three tenths.
+#[test]
+fn a_hand_stops_where_it_stretches_the_cloth() {
+    let mut app = app();
+    let soft = ClothMaterial {
+        stretch_compliance: 1.0e-2,
+        ..ClothMaterial::COTTON
+    };
+    let cloth = app.world_mut().spawn((Cloth::new(10, 10, 0.05), soft)).id();
+    tick(&mut app, 1);
+    let hand = take(&mut app, cloth, 99);
+    change::<ClothGrab>(&mut app, hand, |grab| grab.stretch = 9.0);
+    tick(&mut app, 2);
+    let target = place(&app, cloth, 99) + 3.0 * Vec3::NEG_Y;
+    aim(&mut app, hand, target);
+    tick(&mut app, 192);
+    let at = place(&app, cloth, 99);
+    let stretches = [89, 98].map(|beside| place(&app, cloth, beside).distance(at) / 0.05 - 1.0);
+    let largest = stretches[0].max(stretches[1]);
+    assert!((0.1..0.35).contains(&largest), "{largest}");
+}
+
+/// Of two hands on a cloth the same one yields, whichever was spawned first.
+#[test]
+fn hands_move_alike_in_any_order() {
+    let run = |held: [usize; 2]| {
+        let mut app = app();
+        let cloth = (Cloth::new(16, 16, 0.05), Pins::none());
+        let cloth = app.world_mut().spawn(cloth).id();
+        tick(&mut app, 1);
+        let hands = held.map(|particle| (take(&mut app, cloth, particle), particle));
+        tick(&mut app, 2);
+        for (hand, particle) in hands {
+            let side = if particle == 0 { -5.0 } else { 5.0 };
+            aim(&mut app, hand, side * Vec3::new(1.0, -1.0, 0.0));
+        }
+        tick(&mut app, 64);
+        particles(&app, cloth).clone()
+    };
+    assert_eq!(run([0, 255]), run([255, 0]));
+}
+
+/// A hand whose place is lost goes to its target; the particles that a game pins stay where they are.
+#[test]
+fn a_hand_that_is_lost_is_at_its_target() {
+    let mut app = app();
+    let corner = Pins::new([Pin::Corner(Corner::TopLeft)]);
+    let cloth = app
+        .world_mut()
+        .spawn((Cloth::new(10, 10, 0.05), corner))
+        .id();
+    tick(&mut app, 1);
+    let [hand, at_pin] = [55, 0].map(|particle| take(&mut app, cloth, particle));
+    let before = place(&app, cloth, 0);
+    tick(&mut app, 2);
+    change::<Transform>(&mut app, hand, |place| place.translation = Vec3::NAN);
+    aim(&mut app, at_pin, before + Vec3::Y);
+    tick(&mut app, 32);
+    let found = app.world().get::<Transform>(hand).expect("a place");
+    let target = app.world().get::<ClothGrab>(hand).expect("a hand").target;
+    assert_eq!(found.translation, target);
+    assert_eq!(app.world().get::<ClothFault>(cloth), None);
+    assert_eq!(place(&app, cloth, 0), before);
+}
+
 /// A hand that is told of another particle or another cloth takes hold of that, and lets the first one go.
 #[test]
 fn a_hand_takes_hold_anew() {

@@ -342,6 +342,57 @@ fn what_moves_nearby_is_met_at_the_full_rate() {
     assert_eq!(stats(&app, cloth).level, Every(4));
 }
 
+/// A body may be pushed, so that a cloth beside it is moved in each tick, too. A ball of other layers, and one that stands still, let it
+/// wait.
+#[test]
+fn a_body_nearby_is_met_at_the_full_rate() {
+    let layers = |layer: u32| ClothLayers {
+        memberships: layer,
+        filters: layer,
+    };
+    let body = ClothBody::ball(1.0, 0.2);
+    for (is_body, is_of_others, level) in [
+        (false, false, Every(4)),
+        (true, false, Full),
+        (true, true, Every(4)),
+    ] {
+        let mut app = app();
+        let cloth = app.world_mut().spawn((sheet(8), layers(1))).id();
+        set(&mut app, cloth, Every(4));
+        let place = Transform::from_xyz(0.4, -0.4, 0.5);
+        let mut ball = app.world_mut().spawn((ClothCollider::ball(0.2), place));
+        if is_body {
+            ball.insert(body);
+        }
+        if is_of_others {
+            ball.insert(layers(2));
+        }
+        tick(&mut app, 8);
+        let stats = stats(&app, cloth);
+        assert_eq!(stats.level, level, "{is_body} {is_of_others}");
+    }
+}
+
+/// A cloth that is moved in each fourth tick teleports in the tick in which it is told to.
+#[test]
+fn a_teleport_does_not_wait_for_its_turn() {
+    for wait in 0..4 {
+        let mut app = app();
+        let cloth = app
+            .world_mut()
+            .spawn((sheet(8), ClothLod::at(Every(4))))
+            .id();
+        tick(&mut app, 8 + wait);
+        let before = places(&app, cloth)[80];
+        change::<Transform>(&mut app, cloth, |place| place.translation.x = 5.0);
+        app.world_mut().entity_mut(cloth).insert(ClothTeleport);
+        tick(&mut app, 1);
+        assert!(app.world().get::<ClothTeleport>(cloth).is_none(), "{wait}");
+        let after = in_world(&app, cloth)[80] - Vec3::X * 5.0;
+        assert!(after.distance(before) < 0.2, "{wait}: {before} {after}");
+    }
+}
+
 /// What freezes in a collider no longer touches it, and says so.
 #[test]
 fn what_is_frozen_touches_nothing() {

@@ -718,14 +718,17 @@ fn layers_are_as_thick_as_their_map() {
     let mut app = app();
     app.world_mut()
         .spawn((ClothCollider::plane(), Transform::default()));
-    let sheets = [0.01, 0.03].map(|height| {
+    let heights = [0.01, 0.03];
+    let sheets = heights.map(|height| {
         let bundle = (sheet(height), thinner.clone());
         app.world_mut().spawn(bundle).id()
     });
     // The mean gap of either half, away from the middle.
     let gaps = |app: &App| {
         let [below, above] = sheets.map(|sheet| particles(app, sheet).positions());
-        let all: Vec<[f32; 2]> = below.zip(above).map(|(a, b)| [a.x, b.y - a.y]).collect();
+        let begun = heights[1] - heights[0];
+        let gap = |(below, above): (Vec3, Vec3)| [below.x, above.y - below.y + begun];
+        let all: Vec<[f32; 2]> = below.zip(above).map(gap).collect();
         [-1.0, 1.0].map(|side| {
             let half = all.iter().filter(|of| of[0] * side > 0.1);
             let gaps: Vec<f32> = half.map(|of| of[1]).collect();

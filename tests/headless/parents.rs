@@ -72,6 +72,8 @@ fn a_collider_follows_what_is_above_it() {
     change::<Transform>(&mut app, root, |place| place.translation.z = 9.0);
     tick(&mut app, 1);
     assert!(touches(&app));
+    // It stands still again.
+    tick(&mut app, 3);
     // Away from it, by being put under nothing; and not back by a parent without a place.
     app.world_mut().entity_mut(limb).remove::<ChildOf>();
     tick(&mut app, 120);
@@ -134,6 +136,34 @@ fn a_disabled_collider_is_not_met() {
     let deepest = app.world().get::<ClothContacts>(cloth).expect("contacts");
     let deepest = deepest.with(ball).expect("a touch").deepest_penetration;
     assert!(deepest < 0.3, "{deepest}");
+    // Moved beyond it while it is disabled, it has not gone through it.
+    app.world_mut().entity_mut(ball).insert(Disabled);
+    let mut transform = app.world_mut().entity_mut(ball);
+    let mut place = transform.get_mut::<Transform>().expect("a place");
+    place.translation.z = -9.0;
+    tick(&mut app, 2);
+    app.world_mut().entity_mut(ball).remove::<Disabled>();
+    tick(&mut app, 1);
+    let lowest = particles(&app, cloth).positions().map(|at| at.z);
+    let lowest = lowest.fold(0.0, f32::min);
+    assert!(lowest > -1.0, "{lowest}");
+}
+
+/// A table that is moved by 5 cm takes the cloth on it along by no more than that: it does not go on by itself.
+#[test]
+fn a_collider_that_stops_has_stopped() {
+    let mut app = app();
+    let above = Transform::from_xyz(0.0, 0.06, 0.0);
+    let cloth = (Cloth::new(9, 9, 0.1).lying().centred(), Pins::none(), above);
+    let cloth = app.world_mut().spawn(cloth).id();
+    let table = ClothCollider::cuboid(4.0, 0.1, 4.0);
+    let table = app.world_mut().spawn((table, Transform::default())).id();
+    tick(&mut app, 32);
+    let before = position(&app, cloth, (4, 4)).x;
+    change::<Transform>(&mut app, table, |place| place.translation.x = 0.05);
+    tick(&mut app, 64);
+    let gone = position(&app, cloth, (4, 4)).x - before;
+    assert!((0.0..0.06).contains(&gone), "{gone}");
 }
 
 /// Bevy's `Disabled` does not disable children: a collider below something disabled is met, and moves with it.

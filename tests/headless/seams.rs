@@ -722,6 +722,12 @@ fn sewn_cloths_sleep_and_wake_together() {
     }
     println!("asleep after {ticks} ticks");
     assert_eq!(are_asleep(&app), [true; 2]);
+    // What changes of their seam wakes them.
+    change::<ClothSeam>(&mut app, seam, |seam| seam.compliance = 1.0e-4);
+    tick(&mut app, 2);
+    assert_eq!(are_asleep(&app), [false; 2]);
+    tick(&mut app, 1280);
+    assert_eq!(are_asleep(&app), [true; 2]);
     let before = both.map(|cloth| places(&app, cloth));
     tick(&mut app, 64);
     assert_eq!(both.map(|cloth| places(&app, cloth)), before);
@@ -998,7 +1004,8 @@ fn the_order_of_spawning_changes_nothing() {
                 0..3 => made[of] = spawn(&mut app, of),
                 _ => {
                     let [a, b] = [["left", "middle"], ["middle", "right"]][of - 3];
-                    let sides = [[11, 0], [8, 0]][of - 3];
+                    // Of the middle, they share their particles.
+                    let sides = [[11, 0], [0, 0]][of - 3];
                     let [a, b] = [(a, Pin::Column(sides[0])), (b, Pin::Column(sides[1]))];
                     sew(&mut app, ClothSeam::new(a, b).closing_in(0.5));
                 }
@@ -1058,12 +1065,25 @@ fn bad_seams_have_faults() {
     }
 }
 
+/// What is no seam any more has no fault.
+#[test]
+fn a_seam_that_is_removed_is_at_fault_no_more() {
+    let mut app = app();
+    let nobody = |row| ("nobody", Pin::Row(row));
+    let seam = sew(&mut app, ClothSeam::new(nobody(0), nobody(1)));
+    tick(&mut app, 2);
+    assert!(app.world().get::<ClothFault>(seam).is_some());
+    app.world_mut().entity_mut(seam).remove::<ClothSeam>();
+    tick(&mut app, 1);
+    assert!(app.world().get::<ClothFault>(seam).is_none());
+}
+
 /// A cloth that is despawned, disabled, rebuilt, teleported or at fault while it is sewn: nothing panics, and what comes back
 /// is sewn again.
 #[test]
 fn cloths_of_a_seam_may_change_and_go() {
     type Change = fn(&mut EntityWorldMut);
-    let changes: [(&str, Change); 8] = [
+    let changes: [(&str, Change); 9] = [
         ("despawned", |_| {}),
         ("disabled", |cloth| {
             cloth.insert(Disabled);
@@ -1073,6 +1093,9 @@ fn cloths_of_a_seam_may_change_and_go() {
         }),
         ("another grid", |cloth| {
             cloth.insert(Cloth::new(23, 12, 0.025));
+        }),
+        ("a grid of as many particles", |cloth| {
+            cloth.insert(Cloth::new(16, 9, 0.55 / 15.0));
         }),
         ("emptied", |cloth| {
             cloth.insert(ClothParticles::default());

@@ -8,7 +8,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::quantity::QuantityError;
+use crate::cloth::quantity::{Allowed, QuantityError};
 pub use stiffening::ClothStiffening;
 
 /// The material of a cloth. May change at any time.
@@ -124,9 +124,7 @@ impl ClothMaterial {
         let name = "shear compliance (m/N)";
         check(self.shear_compliance, |v| v >= 0.0, name, "zero or more")?;
         finite(self.stretch_damping, "damping along springs (s)")?;
-        let unit = |v: f32| (0.0..=1.0).contains(&v);
-        check(self.damping, unit, "damping D", "from 0 to 1")?;
-        Ok(())
+        Allowed::SHARE.check("damping D", [self.damping])
     }
 
     /// Stretch compliances along rows, the weft, and along columns, the warp (m/N).

@@ -1,6 +1,6 @@
 //! The masses that a material gives to particles.
 
-use crate::cloth::{material::ClothMaterial, quantity::QuantityError, surface::Surface};
+use crate::cloth::{Allowed, QuantityError, material::ClothMaterial, surface::Surface};
 
 /// Factors of a cloth's areal density.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,11 +58,7 @@ impl DensityFactors {
         let ends = masses.fold([f32::INFINITY, 0.0], |[least, most]: [f32; 2], mass| {
             [least.min(mass), most.max(mass)]
         });
-        for mass in ends {
-            let range = |mass: f32| (1.0e-15..1.0e15).contains(&mass);
-            let name = "the mass of a particle (kg)";
-            QuantityError::check(mass, range, name, "from 10⁻¹⁵ to 10¹⁵")?;
-        }
-        Ok(())
+        let usable = |mass: f32| (1.0e-15..1.0e15).contains(&mass);
+        Allowed(usable, "from 10⁻¹⁵ to 10¹⁵").check("the mass of a particle (kg)", ends)
     }
 }

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::cloth::{
     function::define_function,
-    quantity::QuantityError,
+    quantity::{Allowed, QuantityError},
     surface::{Surface, VertexAttribute},
 };
 
@@ -151,9 +151,8 @@ impl ClothPaint {
             }
             Self::Vertices(values) => of_vertices(surface, values)?,
         };
-        for value in &values {
-            QuantityError::check(*value, |v| v >= 0.0, quantity, "zero or more")?;
-        }
+        let zero_or_more = Allowed(|v| v >= 0.0, "zero or more");
+        zero_or_more.check(quantity, values.iter().copied())?;
         Ok(values)
     }
 }

@@ -4,7 +4,7 @@ use bevy::math::{Isometry3d, Vec3};
 use parry3d::{
     math::Pose,
     query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher},
-    shape::{Ball, Capsule, Cuboid, HalfSpace, PackedFeatureId, PolygonalFeature, Shape},
+    shape::{PackedFeatureId, PolygonalFeature, Shape},
 };
 
 use super::shape::ColliderShape;
@@ -149,24 +149,6 @@ impl Manifold {
                 normal: at[0].rotation * manifold.local_n1,
                 distance: point.dist,
             }));
-        }
-    }
-}
-
-impl ColliderShape {
-    /// Visits the solids it is made of, with their poses.
-    fn for_each_solid(&self, mut visit: impl FnMut(Pose, &dyn Shape)) {
-        match *self {
-            Self::Ball { radius } => visit(Pose::IDENTITY, &Ball::new(radius)),
-            Self::Capsule {
-                radius,
-                half_length,
-            } => visit(Pose::IDENTITY, &Capsule::new_y(half_length, radius)),
-            Self::Cuboid { half_size } => visit(Pose::IDENTITY, &Cuboid::new(half_size)),
-            Self::HalfSpace => visit(Pose::IDENTITY, &HalfSpace::new(Vec3::Y)),
-            Self::Geometry(ref geometry) => geometry.for_each_solid(visit),
-            // Bodies do not stand on it.
-            Self::Deforming(_) => {}
         }
     }
 }

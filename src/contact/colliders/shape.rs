@@ -1,8 +1,12 @@
 //! Shapes of colliders, and the distance of a point from them.
 
 use bevy::{
-    math::{Isometry3d, Vec3},
+    math::{Isometry3d, Quat, Vec3},
     reflect::Reflect,
+};
+use parry3d::{
+    math::Pose,
+    shape::{Ball, Capsule, Cuboid, HalfSpace, Shape, SharedShape, TypedShape},
 };
 
 pub(crate) use super::nearest::Nearest;
@@ -44,6 +48,50 @@ pub enum ColliderShape {
 }
 
 impl ColliderShape {
+    /// A shape of parry that is one of these, with its pose; `None` for any other, which is a geometry.
+    pub(super) fn of_parry(shape: &SharedShape) -> Option<(Isometry3d, Self)> {
+        let along_y = |direction: Vec3| Quat::from_rotation_arc(Vec3::Y, direction);
+        let (pose, shape) = match shape.as_typed_shape() {
+            TypedShape::Ball(&Ball { radius }) => (Isometry3d::IDENTITY, Self::Ball { radius }),
+            TypedShape::Cuboid(cuboid) => {
+                let half_size = cuboid.half_extents;
+                (Isometry3d::IDENTITY, Self::Cuboid { half_size })
+            }
+            TypedShape::Capsule(&Capsule { radius, segment }) => {
+                let (a, b) = (segment.a, segment.b);
+                let half_length = a.distance(b) / 2.0;
+                let capsule = Self::Capsule {
+                    radius,
+                    half_length,
+                };
+                let along = (b - a).normalize_or(Vec3::Y);
+                (Isometry3d::new(a.midpoint(b), along_y(along)), capsule)
+            }
+            TypedShape::HalfSpace(half) => {
+                let rotation = along_y(half.normal.normalize_or(Vec3::Y));
+                (Isometry3d::from_rotation(rotation), Self::HalfSpace)
+            }
+            _ => return None,
+        };
+        Some((pose, shape))
+    }
+
+    /// Visits the solids it is made of as shapes of parry, with their poses.
+    pub(super) fn for_each_solid(&self, mut visit: impl FnMut(Pose, &dyn Shape)) {
+        match *self {
+            Self::Ball { radius } => visit(Pose::IDENTITY, &Ball::new(radius)),
+            Self::Capsule {
+                radius,
+                half_length,
+            } => visit(Pose::IDENTITY, &Capsule::new_y(half_length, radius)),
+            Self::Cuboid { half_size } => visit(Pose::IDENTITY, &Cuboid::new(half_size)),
+            Self::HalfSpace => visit(Pose::IDENTITY, &HalfSpace::new(Vec3::Y)),
+            Self::Geometry(ref geometry) => geometry.for_each_solid(visit),
+            // Bodies do not stand on it.
+            Self::Deforming(_) => {}
+        }
+    }
+
     /// The shape in a pose, as a core and a radius around it. For a geometry, its bounding box; for a mesh that deforms, that of
     /// its whole path.
     pub fn core(&self, pose: Isometry3d) -> (Core, f32) {
@@ -91,54 +139,50 @@ impl ColliderShape {
         }
     }
 
-    /// Distance from the origin to the farthest point of the shape (m); infinite for a half-space.
-    pub fn extent(&self) -> f32 {
+    /// Its size (m), as the extent of its core, the radius around that, and its thickness.
+    fn size(&self) -> (f32, Option<f32>, f32) {
+        let corner = |[lower, upper]: [Vec3; 2]| lower.abs().max(upper.abs()).length();
         match *self {
-            Self::Ball { radius } => radius,
+            Self::Ball { radius } => (0.0, Some(radius), radius),
             Self::Capsule {
                 radius,
                 half_length,
-            } => radius + half_length,
-            Self::Cuboid { half_size } => half_size.length(),
-            Self::HalfSpace => f32::INFINITY,
-            Self::Geometry(_) | Self::Deforming(_) => {
-                let [lower, upper] = self.bounds();
-                lower.abs().max(upper.abs()).length()
-            }
+            } => (half_length, Some(radius), radius),
+            Self::Cuboid { half_size } => (half_size.length(), None, half_size.min_element()),
+            Self::HalfSpace => (f32::INFINITY, None, f32::INFINITY),
+            Self::Geometry(ref of) => (corner(of.bounds()), None, of.thickness()),
+            Self::Deforming(ref mesh) => (corner(mesh.bounds()), None, 0.0),
         }
+    }
+
+    /// Distance from the origin to the farthest point of the shape (m); infinite for a half-space.
+    pub fn extent(&self) -> f32 {
+        self.core_extent() + self.radius().unwrap_or(0.0)
     }
 
     /// Distance from the origin to the farthest point of the core (m); infinite for a half-space.
     pub(crate) fn core_extent(&self) -> f32 {
-        match *self {
-            Self::Ball { .. } => 0.0,
-            Self::Capsule { half_length, .. } => half_length,
-            _ => self.extent(),
-        }
+        self.size().0
     }
 
     /// Smallest depth at which a point can be nearer to the other side (m); infinite for a half-space.
     pub fn thickness(&self) -> f32 {
-        match *self {
-            Self::Ball { radius } | Self::Capsule { radius, .. } => radius,
-            Self::Cuboid { half_size } => half_size.min_element(),
-            Self::HalfSpace => f32::INFINITY,
-            Self::Geometry(ref geometry) => geometry.thickness(),
-            Self::Deforming(_) => 0.0,
-        }
+        self.size().2
     }
 
     /// The radius for tests against triangles (m); only balls and capsules have one.
     pub fn radius(&self) -> Option<f32> {
-        match *self {
-            Self::Ball { radius } | Self::Capsule { radius, .. } => Some(radius),
-            _ => None,
-        }
+        self.size().1
     }
 
     /// Whether the shape has edges that may pass through a triangle whose corners are all outside.
     pub fn has_edges(&self) -> bool {
         matches!(self, Self::Cuboid { .. } | Self::Geometry(_))
+    }
+
+    /// Whether its extent is infinite by what it is, and not by a fault.
+    pub(crate) fn is_endless(&self) -> bool {
+        matches!(self, Self::HalfSpace)
     }
 
     /// Whether its nearest point is expensive.

@@ -6,10 +6,7 @@ use bevy::{
     math::{Isometry3d, Vec3},
     reflect::Reflect,
 };
-use parry3d::{
-    math::Pose,
-    shape::{SharedShape, TypedShape},
-};
+use parry3d::{math::Pose, shape::SharedShape};
 
 use super::{
     geometry::{ColliderGeometry, Parts, turn_up},
@@ -92,7 +89,9 @@ impl SharedCollider {
     /// Pose of its frame in the collider's frame, for poses inside a parry shape that ours do not have.
     pub(crate) fn offset(&self) -> Isometry3d {
         match &self.0.source {
-            Source::Parry(shape) => upright(shape).map_or(Isometry3d::IDENTITY, |(pose, _)| pose),
+            Source::Parry(shape) => {
+                ColliderShape::of_parry(shape).map_or(Isometry3d::IDENTITY, |(pose, _)| pose)
+            }
             _ => Isometry3d::IDENTITY,
         }
     }
@@ -124,7 +123,7 @@ impl Source {
                 let ground = height_field(heights, *columns, *size * scale)?;
                 parts.add_mesh(Pose::IDENTITY, ground, true)?;
             }
-            Self::Parry(shape) => match upright(shape) {
+            Self::Parry(shape) => match ColliderShape::of_parry(shape) {
                 Some((_, shape)) => return Ok(shape),
                 None => parts.add(Pose::IDENTITY, shape)?,
             },
@@ -143,38 +142,6 @@ pub(crate) fn check_scale(scale: Vec3) -> Result<(), QuantityError> {
         QuantityError::check(scale, is_scale, "the shape's scale", "finite and not zero")?;
     }
     Ok(())
-}
-
-/// A parry shape as one of our analytic shapes, with its pose.
-fn upright(shape: &SharedShape) -> Option<(Isometry3d, ColliderShape)> {
-    let along_y = |direction: Vec3| bevy::math::Quat::from_rotation_arc(Vec3::Y, direction);
-    match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => {
-            let radius = ball.radius;
-            Some((Isometry3d::IDENTITY, ColliderShape::Ball { radius }))
-        }
-        TypedShape::Cuboid(cuboid) => {
-            let half_size = cuboid.half_extents;
-            Some((Isometry3d::IDENTITY, ColliderShape::Cuboid { half_size }))
-        }
-        TypedShape::Capsule(capsule) => {
-            let [a, b] = [capsule.segment.a, capsule.segment.b];
-            let shape = ColliderShape::Capsule {
-                radius: capsule.radius,
-                half_length: a.distance(b) / 2.0,
-            };
-            let along = (b - a).normalize_or(Vec3::Y);
-            Some((Isometry3d::new(a.midpoint(b), along_y(along)), shape))
-        }
-        TypedShape::HalfSpace(half) => {
-            let rotation = along_y(half.normal.normalize_or(Vec3::Y));
-            Some((
-                Isometry3d::from_rotation(rotation),
-                ColliderShape::HalfSpace,
-            ))
-        }
-        _ => None,
-    }
 }
 
 /// The triangles of a height field: rows along z and columns along x, around the origin.

@@ -22,11 +22,13 @@ pub fn deepest_penetration(
             let beyond = seen_from(pose, position).abs() - half_size.as_dvec3();
             beyond.max(DVec3::ZERO).length() + beyond.max_element().min(0.0)
         }
-        ColliderShape::Geometry(_) | ColliderShape::Deforming(_) => {
-            let local = seen_from(pose, position).as_vec3();
-            f64::from(shape.nearest_within(local, f32::MAX).distance)
+        ColliderShape::Ball { .. } | ColliderShape::Capsule { .. } | ColliderShape::HalfSpace => {
+            core.distance(position)
         }
-        _ => core.distance(position),
+        _ => {
+            let local = seen_from(pose, position).as_vec3();
+            f64::from(radius) + f64::from(shape.nearest_within(local, f32::MAX).distance)
+        }
     };
     let free = particles
         .positions()

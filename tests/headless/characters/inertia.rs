@@ -84,24 +84,46 @@ fn a_rotation_is_shared() {
 /// The nearest root above counts, and that of what a cloth is attached to.
 #[test]
 fn a_cloth_that_is_attached_is_carried_too() {
-    let mut app = app();
-    app.insert_resource(ClothGravity(Vec3::ZERO));
-    let root = (Transform::default(), ClothInertia::share(0.0));
-    let root = app.world_mut().spawn(root).id();
-    let bone = (Transform::from_xyz(0.0, 1.0, 0.0), ChildOf(root));
-    let bone = app.world_mut().spawn(bone).id();
-    let attached = ClothAttachments::new([(Pin::Row(0), bone)]);
-    let cape = (Cloth::new(6, 5, 0.1).flat(), Pins::none(), attached);
-    let cape = app.world_mut().spawn(cape).id();
-    tick(&mut app, 1);
-    let start = in_world(&app, cape);
-    for count in 1_u32..40 {
-        let gone = Vec3::X * 0.002 * (count * count) as f32;
-        change::<Transform>(&mut app, root, |transform| transform.translation = gone);
+    for (share, goes_along) in [(0.0, true), (1.0, false)] {
+        let mut app = app();
+        app.insert_resource(ClothGravity(Vec3::ZERO));
+        let root = (Transform::default(), ClothInertia::share(share));
+        let root = app.world_mut().spawn(root).id();
+        let bone = (Transform::from_xyz(0.0, 1.0, 0.0), ChildOf(root));
+        let bone = app.world_mut().spawn(bone).id();
+        let attached = ClothAttachments::new([(Pin::Row(0), bone)]);
+        let cape = (Cloth::new(6, 5, 0.1).flat(), Pins::none(), attached);
+        let cape = app.world_mut().spawn(cape).id();
         tick(&mut app, 1);
-        for (place, start) in in_world(&app, cape).iter().zip(&start) {
-            assert!(place.distance(*start + gone) < 1.0e-4, "{place} {start}");
+        let start = in_world(&app, cape);
+        let mut off = 0.0_f32;
+        for count in 1_u32..40 {
+            let gone = Vec3::new(0.002, 0.0, 0.001) * (count * count) as f32;
+            change::<Transform>(&mut app, root, |transform| transform.translation = gone);
+            tick(&mut app, 1);
+            for (place, start) in in_world(&app, cape).iter().zip(&start) {
+                off = off.max(place.distance(*start + gone));
+            }
         }
+        assert_eq!(off < 1.0e-4, goes_along, "{share}: {off}");
+    }
+}
+
+/// A root that is moved while the clock stands still carries its cloth once it goes on.
+#[test]
+fn a_root_moved_in_a_pause_carries_when_time_goes_on() {
+    let app = with_plugins(DrapePlugins::new(Update));
+    let (mut app, root, cloth) = beside_root_in(app, ClothInertia::share(0.0));
+    let start = in_world(&app, cloth);
+    app.world_mut().resource_mut::<Time<Virtual>>().pause();
+    app.update();
+    change::<Transform>(&mut app, root, |transform| transform.translation.x = 0.5);
+    (0..3).for_each(|_| app.update());
+    app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+    tick(&mut app, 1);
+    for (place, start) in in_world(&app, cloth).iter().zip(&start) {
+        let truth = *start + Vec3::X * 0.5;
+        assert!(place.distance(truth) < 1.0e-4, "{place} {truth}");
     }
 }
 
@@ -149,6 +171,48 @@ fn what_is_carried_is_drawn_on_its_way() {
                 assert!(drawn.distance(before) < 1.0e-5, "{share}: {drawn} {before}");
             }
         }
+    }
+}
+
+/// Of two roots above a cloth, the nearer one says what it feels.
+#[test]
+fn the_nearest_root_counts() {
+    for (near, gone_along) in [(0.0, 1.0), (1.0, 0.0)] {
+        let (mut app, root, cloth) = beside_root(ClothInertia::share(near));
+        let above = (Transform::default(), ClothInertia::share(1.0 - near));
+        let above = app.world_mut().spawn(above).id();
+        app.world_mut().entity_mut(root).insert(ChildOf(above));
+        let start = in_world(&app, cloth);
+        for count in 1..=20 {
+            let gone = Vec3::X * 0.01 * count as f32;
+            change::<Transform>(&mut app, above, |transform| transform.translation = gone);
+            tick(&mut app, 1);
+            for (place, start) in in_world(&app, cloth).iter().zip(&start) {
+                let truth = *start + gone * gone_along;
+                assert!(place.distance(truth) < 1.0e-4, "{near}: {place} {truth}");
+            }
+        }
+    }
+}
+
+/// What a root has moved while it was at fault is no motion of its own.
+#[test]
+fn a_mended_root_begins_where_it_is() {
+    let good = ClothInertia::share(0.0);
+    let (mut app, root, cloth) = beside_root(good);
+    let start = in_world(&app, cloth);
+    change::<ClothInertia>(&mut app, root, |inertia| {
+        *inertia = ClothInertia::share(2.0)
+    });
+    tick(&mut app, 1);
+    assert!(fault(&app, cloth).is_some());
+    change::<Transform>(&mut app, root, |transform| transform.translation.x = 0.5);
+    tick(&mut app, 1);
+    change::<ClothInertia>(&mut app, root, |inertia| *inertia = good);
+    tick(&mut app, 2);
+    assert_eq!(fault(&app, cloth), None);
+    for (place, start) in in_world(&app, cloth).iter().zip(&start) {
+        assert!(place.distance(*start) < 1.0e-4, "{place} {start}");
     }
 }
 

@@ -5,7 +5,7 @@ use bevy::{
     mesh::skinning::SkinnedMesh,
     prelude::*,
 };
-use bevy_drape::prelude::*;
+use bevy_drape::{plugin::ClothSkeleton, prelude::*};
 
 use super::rig::*;
 use crate::{mesh::vertices, meshes::sheets::*, support::*};
@@ -168,9 +168,31 @@ fn what_is_held_is_drawn_where_the_bones_are_drawn() {
     }
 }
 
-/// A character that stands still lets its cloth sleep; a bone that moves wakes it.
+/// A character that stands still lets its cloth sleep; a bone that moves wakes it, another skin, and a skeleton that goes.
 #[test]
 fn a_bone_wakes_what_sleeps() {
+    type Change = fn(&mut App, &Rig);
+    let changes: [Change; 3] = [
+        |app, rig| change::<Transform>(app, rig.bones[2], |bone| bone.rotate_z(0.05)),
+        |app, rig| change::<ClothSkin>(app, rig.cloth, |skin| skin.blend = 0.5),
+        |app, rig| {
+            let mut cloth = app.world_mut().entity_mut(rig.cloth);
+            cloth.remove::<(SkinnedMesh, ClothSkeleton)>();
+        },
+    ];
+    for (index, change) in changes.into_iter().enumerate() {
+        let (mut app, rig) = asleep();
+        let still: Vec<Vec3> = particles(&app, rig.cloth).positions().collect();
+        tick(&mut app, 10);
+        assert!(particles(&app, rig.cloth).positions().eq(still));
+        change(&mut app, &rig);
+        tick(&mut app, 2);
+        assert!(!stats(&app, rig.cloth).is_asleep, "{index}");
+    }
+}
+
+/// A character that stands still, and whose cloth sleeps.
+fn asleep() -> (App, Rig) {
     let (mut app, rig) = animated(ClothSkin::painted());
     app.world_mut().entity_mut(rig.cloth).insert(ClothMaterial {
         damping: 0.1,
@@ -182,12 +204,7 @@ fn a_bone_wakes_what_sleeps() {
         ticks += 1;
         assert!(ticks < 1500, "it falls asleep");
     }
-    let still: Vec<Vec3> = particles(&app, rig.cloth).positions().collect();
-    tick(&mut app, 10);
-    assert!(particles(&app, rig.cloth).positions().eq(still));
-    change::<Transform>(&mut app, rig.bones[2], |bone| bone.rotate_z(0.05));
-    tick(&mut app, 2);
-    assert!(!stats(&app, rig.cloth).is_asleep);
+    (app, rig)
 }
 
 /// A grid that has no skeleton stays near where it is at rest, wherever its entity goes; with the component gone it falls.

@@ -168,6 +168,24 @@ fn an_edited_mesh_is_built_anew() {
     assert!(after < before - 0.3, "{before} {after}");
 }
 
+/// Also while its cloth sleeps.
+#[test]
+fn an_edited_mesh_wakes_its_cloth() {
+    let mut app = app_that_draws(FixedUpdate);
+    let handle = add(&mut app, sheet_asset(3, 3));
+    let cloth = spawn(&mut app, &handle, by_its_edge());
+    let mut ticks = 0;
+    while ticks < 10 || !stats(&app, cloth).is_asleep {
+        tick(&mut app, 1);
+        ticks += 1;
+        assert!(ticks < 64 * 60, "it does not come to rest");
+    }
+    let mut meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
+    *meshes.get_mut(&handle).expect("the asset") = sheet_asset(6, 2);
+    tick(&mut app, 3);
+    assert_eq!(particles(&app, cloth).len(), 12);
+}
+
 /// An edit that makes it no cloth is a fault, and one that mends it mends the cloth.
 #[test]
 fn an_edit_may_break_and_mend() {

@@ -1,5 +1,7 @@
 //! Colliders for cloth.
 
+mod compound;
+
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     math::{Isometry3d, Quat, Vec3},
@@ -9,11 +11,22 @@ use bevy::{
 use parry3d::{math::Pose, shape::SharedShape};
 
 use super::{
-    geometry::{ColliderGeometry, Parts},
+    geometry::ColliderGeometry,
     shape::ColliderShape,
-    source::{SharedCollider, Source, check_scale},
+    source::{SharedCollider, Source},
 };
-use crate::cloth::{ClothError, FARTHEST, MeshError, QuantityError, ShapeError};
+use crate::cloth::{ClothError, MeshError, QuantityError};
+
+/// A [`length`] that errors name as that `of` a shape.
+macro_rules! length {
+    ($of:literal, $name:literal, $value:expr, $scale:expr) => {
+        length(
+            $value,
+            $scale,
+            [concat!($of, " ", $name), concat!($of, " scaled ", $name)],
+        )
+    };
+}
 
 /// A collider for cloth at the entity's [`Transform`]. Every cloth collides with it, unless
 /// [`ClothLayers`](crate::contact::ClothLayers) exclude it. Move it however you like. Cloth pushes it back only if it has a
@@ -220,42 +233,44 @@ impl ClothCollider {
     /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let sizes = scale.abs();
+        // The scale of a radius about the y axis.
+        let across = sizes.x.max(sizes.z);
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
-            Self::Compound(ref parts) => compound(parts, scale),
+            Self::Compound(ref parts) => {
+                let part = |(pose, of): &(Isometry3d, Self)| (*pose, of.offset(), of.scaled(scale));
+                compound::scaled(parts.iter().map(part), scale)
+            }
             Self::Mesh(_) => Err(MeshError::NotLoaded.into()),
             Self::Cylinder {
                 radius,
                 half_height,
             } => {
-                let (radius, half_height) = round(radius, half_height, sizes, &CYLINDER)?;
-                let cylinder = SharedShape::cylinder(half_height, radius);
-                ColliderGeometry::of_parry(Pose::IDENTITY, &cylinder).map(ColliderShape::Geometry)
+                let radius = length!("the cylinder's", "radius (m)", radius, across)?;
+                let half_height =
+                    length!("half of the cylinder's", "height (m)", half_height, sizes.y)?;
+                convex(Pose::IDENTITY, &SharedShape::cylinder(half_height, radius))
             }
             Self::Cone {
                 radius,
                 half_height,
             } => {
-                let (radius, half_height) = round(radius, half_height, sizes, &CONE)?;
+                let radius = length!("the cone's", "radius (m)", radius, across)?;
+                let half_height =
+                    length!("half of the cone's", "height (m)", half_height, sizes.y)?;
                 let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
                 let pose = if scale.y > 0.0 { Pose::IDENTITY } else { over };
-                let cone = SharedShape::cone(half_height, radius);
-                ColliderGeometry::of_parry(pose, &cone).map(ColliderShape::Geometry)
+                convex(pose, &SharedShape::cone(half_height, radius))
             }
             Self::Ball { radius } => {
-                let names = ["the ball's radius (m)", "the ball's scaled radius (m)"];
-                let radius = length(radius, sizes.max_element(), names)?;
+                let radius = length!("the ball's", "radius (m)", radius, sizes.max_element())?;
                 Ok(ColliderShape::Ball { radius })
             }
             Self::Capsule {
                 radius,
                 half_length,
             } => {
-                let names = [
-                    "the capsule's radius (m)",
-                    "the capsule's scaled radius (m)",
-                ];
-                let radius = length(radius, across(sizes), names)?;
+                let radius = length!("the capsule's", "radius (m)", radius, across)?;
                 let half_length = QuantityError::check(
                     half_length * sizes.y,
                     |v| v >= 0.0 && v.is_finite(),
@@ -268,12 +283,13 @@ impl ClothCollider {
                 })
             }
             Self::Cuboid { half_size } => {
-                let names = [
-                    "half of the box's length (m)",
-                    "half of the box's scaled length (m)",
-                ];
                 for axis in 0..3 {
-                    length(half_size[axis], sizes[axis], names)?;
+                    length!(
+                        "half of the box's",
+                        "length (m)",
+                        half_size[axis],
+                        sizes[axis]
+                    )?;
                 }
                 Ok(ColliderShape::Cuboid {
                     half_size: half_size * sizes,
@@ -284,28 +300,6 @@ impl ClothCollider {
     }
 }
 
-/// Names of the radius and the height of a round shape in errors, unscaled and scaled.
-type RoundNames = [[&'static str; 2]; 2];
-
-const CYLINDER: RoundNames = [
-    [
-        "the cylinder's radius (m)",
-        "the cylinder's scaled radius (m)",
-    ],
-    [
-        "half of the cylinder's height (m)",
-        "half of the cylinder's scaled height (m)",
-    ],
-];
-
-const CONE: RoundNames = [
-    ["the cone's radius (m)", "the cone's scaled radius (m)"],
-    [
-        "half of the cone's height (m)",
-        "half of the cone's scaled height (m)",
-    ],
-];
-
 /// A length under a scale, checked before and after scaling. `names` are the names of both.
 fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, QuantityError> {
     let positive = |v: f32| v > 0.0 && v.is_finite();
@@ -313,88 +307,9 @@ fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, Quant
     QuantityError::check(value * scale, positive, names[1], "positive")
 }
 
-/// The scale of a radius about the y axis: the larger of x and z.
-fn across(scale: Vec3) -> f32 {
-    scale.x.max(scale.z)
-}
-
-/// The radius and half of the height of a shape that is round about the y axis.
-fn round(
-    radius: f32,
-    half_height: f32,
-    scale: Vec3,
-    names: &RoundNames,
-) -> Result<(f32, f32), QuantityError> {
-    let radius = length(radius, across(scale), names[0])?;
-    Ok((radius, length(half_height, scale.y, names[1])?))
-}
-
-/// Several shapes as one.
-fn compound(
-    children: &[(Isometry3d, ClothCollider)],
-    scale: Vec3,
-) -> Result<ColliderShape, ClothError> {
-    check_scale(scale)?;
-    let no_such = |shape: &str| {
-        Err(ClothError::Shape(ShapeError::NoSuchShape {
-            shape: shape.to_string(),
-        }))
-    };
-    if children.is_empty() {
-        return no_such("an empty compound");
-    }
-    let is_even = scale.abs_diff_eq(Vec3::splat(scale.x), 1.0e-5 * scale.length());
-    let mut parts = Parts::default();
-    for (part, (pose, child)) in children.iter().enumerate() {
-        let pose = part_pose(part, *pose)?;
-        if let ClothCollider::Mesh(_) = child {
-            return no_such("the entity's `Mesh3d` as a part of a compound");
-        }
-        // Rotating and then stretching along one axis would shear the part.
-        if !is_even && !pose.rotation.is_near_identity() {
-            return Err(ShapeError::SkewedPart { scale }.into());
-        }
-        let place = Vec3::from(pose.translation) * scale;
-        let pose = Isometry3d::new(place, pose.rotation) * child.offset();
-        let pose = Pose::from_parts(pose.translation.into(), pose.rotation);
-        let shape = match child.scaled(scale)? {
-            ColliderShape::Geometry(geometry) => {
-                parts.add_parts(pose, geometry.parts());
-                continue;
-            }
-            ColliderShape::Ball { radius } => SharedShape::ball(radius),
-            ColliderShape::Capsule {
-                radius,
-                half_length,
-            } => SharedShape::capsule_y(half_length, radius),
-            ColliderShape::Cuboid { half_size: half } => {
-                SharedShape::cuboid(half.x, half.y, half.z)
-            }
-            _ => return no_such("a plane in a compound"),
-        };
-        parts.add(pose, &shape)?;
-    }
-    Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
-}
-
-/// The pose of a compound's part, with a normalized rotation.
-///
-/// # Errors
-/// [`ShapeError::PartPose`] for an invalid position or rotation.
-fn part_pose(part: usize, pose: Isometry3d) -> Result<Isometry3d, ShapeError> {
-    let place = Vec3::from(pose.translation);
-    let rotation = pose.rotation.normalize();
-    // Not by the largest element, which ignores NaN.
-    let is_in_reach = place.abs().cmplt(Vec3::splat(FARTHEST)).all();
-    if is_in_reach && rotation.is_finite() && rotation.is_normalized() {
-        Ok(Isometry3d::new(place, rotation))
-    } else {
-        Err(ShapeError::PartPose {
-            part,
-            place,
-            rotation: format!("{:?}", pose.rotation),
-        })
-    }
+/// A convex shape of parry with a pose.
+fn convex(pose: Pose, shape: &SharedShape) -> Result<ColliderShape, ClothError> {
+    ColliderGeometry::of_parry(pose, shape).map(ColliderShape::Geometry)
 }
 
 #[cfg(test)]

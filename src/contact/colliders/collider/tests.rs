@@ -3,6 +3,7 @@
 use bevy::math::Quat;
 
 use super::*;
+use crate::cloth::ShapeError;
 
 #[test]
 fn shapes_are_scaled() {

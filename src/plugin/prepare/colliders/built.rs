@@ -42,8 +42,7 @@ impl BuiltShape {
         }
         let made = meshes.resolve(collider, source)?;
         let shape = made.scaled(scale)?;
-        // Only a half-space has no end.
-        if shape != ColliderShape::HalfSpace {
+        if !shape.is_endless() {
             check_extent(&shape)?;
         }
         Ok(Self {

@@ -180,3 +180,41 @@ pub(crate) fn note_changed_meshes(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::{asset::AssetPlugin, mesh::MeshPlugin, prelude::*, time::TimeUpdateStrategy};
+
+    use super::*;
+    use crate::plugin::ClothPlugin;
+
+    /// Colliders of one mesh share what is made of it, until the mesh is dropped.
+    #[test]
+    fn what_is_shared_goes_with_its_mesh() {
+        let mut app = App::new();
+        let plugins = (AssetPlugin::default(), MeshPlugin, ClothPlugin::default());
+        app.add_plugins((MinimalPlugins, TransformPlugin, plugins))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+        app.finish();
+        app.cleanup();
+        let mut meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
+        let mesh = Mesh3d(meshes.add(Cuboid::default()));
+        let made = |app: &App| app.world().resource::<SharedMeshes>().rigid.len();
+        for collider in [ClothCollider::mesh(), ClothCollider::mesh_hull()] {
+            let both = [(); 2].map(|()| (collider.clone(), mesh.clone()));
+            app.world_mut().spawn_batch(both);
+        }
+        (0..3).for_each(|_| app.update());
+        assert_eq!(made(&app), 2);
+        let mut colliders = app
+            .world_mut()
+            .query_filtered::<Entity, With<ClothCollider>>();
+        let all: Vec<Entity> = colliders.iter(app.world()).collect();
+        drop(mesh);
+        for collider in all {
+            app.world_mut().despawn(collider);
+        }
+        (0..3).for_each(|_| app.update());
+        assert_eq!(made(&app), 0);
+    }
+}

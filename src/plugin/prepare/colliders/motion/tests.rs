@@ -58,6 +58,25 @@ fn a_mass_is_that_of_the_ticks_beginning() {
     }
 }
 
+/// All the way round, each tick turns by as much as the transform did, and never by the rest of the circle.
+#[test]
+fn a_turn_is_the_shorter_way_round() {
+    let axis = Vec3::new(0.6, 0.0, 0.8);
+    let turned = |angle| Transform::from_rotation(Quat::from_axis_angle(axis, angle));
+    let collider = ClothCollider::cuboid(0.1, 0.2, 0.3);
+    let (mut app, entity) = app_with(collider, ClothBody::ball(1.0, 0.1), turned(0.0));
+    for count in 1_u8..64 {
+        let place = turned(0.1 * f32::from(count));
+        app.world_mut().entity_mut(entity).insert(place);
+        app.update();
+        let turn = moving(&app, entity).turn;
+        assert!(
+            turn.distance(axis * 0.1) < 10.0 * ROUNDING,
+            "{count}: {turn}"
+        );
+    }
+}
+
 /// The centre of mass is seen from the shape's origin, and the inertia in the entity's frame, which is not that of the shape.
 #[test]
 fn a_mass_is_where_the_entity_has_it() {
