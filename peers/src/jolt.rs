@@ -255,7 +255,7 @@ fn centre(positions: &[[f32; 3]]) -> [f32; 3] {
 }
 
 /// The numbers below `count` in an order that is random and always the same.
-pub fn shuffled(count: usize) -> Vec<u32> {
+fn shuffled(count: usize) -> Vec<u32> {
     let mut all: Vec<u32> = (0..count as u32).collect();
     let mut random = 1_u64;
     for last in (1..count).rev() {

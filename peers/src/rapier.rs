@@ -32,8 +32,6 @@ pub struct Setting {
     pub iterations: usize,
     /// Rigid edges, as is its default. Only with them does it bound the distance of each vertex from the pins.
     pub is_rigid: bool,
-    /// The order of its springs: by the vertices' numbers, or at random.
-    pub is_shuffled: bool,
 }
 
 pub struct RapierCloth {
@@ -48,19 +46,12 @@ pub struct RapierCloth {
     /// Of a sub-step (s).
     seconds: f32,
     gas: f32,
-    /// Its vertex of each of ours.
-    vertices: Vec<u32>,
 }
 
 impl RapierCloth {
     /// # Errors
     /// What it refuses.
     pub fn new(told: &Told, setting: Setting) -> Result<Self, String> {
-        let vertices = if setting.is_shuffled {
-            super::jolt::shuffled(told.positions.len())
-        } else {
-            (0..told.positions.len() as u32).collect()
-        };
         let world = WorldId::new();
         let seconds = told.frame / setting.substeps as f32;
         let mut rigid = PhysicsWorld::new();
@@ -83,7 +74,7 @@ impl RapierCloth {
         let mut cloths = RapierClothWorld::new(world);
         cloths.solver_settings.iterations = setting.iterations;
         cloths.collision_settings.motion_limit_ratio = MOTION;
-        let cloth = cloth(told, setting, &vertices).map_err(|error| error.to_string())?;
+        let cloth = cloth(told, setting).map_err(|error| error.to_string())?;
         let cloth = cloths.add_cloth(cloth);
         Ok(Self {
             world,
@@ -95,7 +86,6 @@ impl RapierCloth {
             done: 0,
             seconds,
             gas: told.gas,
-            vertices,
         })
     }
 
@@ -150,33 +140,27 @@ impl Frames for RapierCloth {
 
     fn places(&mut self) -> Places {
         let cloth = self.cloths.cloth(self.cloth).expect("it was added");
-        let place = |vertex: &u32| cloth.positions()[*vertex as usize].to_array();
-        self.vertices.iter().map(place).collect()
+        let places = cloth.positions().iter();
+        places.map(|place| place.to_array()).collect()
     }
 }
 
-fn cloth(
-    told: &Told,
-    setting: Setting,
-    vertices: &[u32],
-) -> Result<Cloth, rapier_cloth::ClothError> {
-    let mut places = vec![rapier_cloth::Vec3::ZERO; vertices.len()];
-    for (vertex, place) in vertices.iter().zip(&told.positions) {
-        places[*vertex as usize] = rapier_cloth::Vec3::from_array(*place);
-    }
-    let of = |vertex: u32| vertices[vertex as usize];
-    let triangles = told.triangles.iter().map(|corners| corners.map(of));
-    let mut mesh = ClothMesh::new(places.clone(), triangles.collect())?;
+fn cloth(told: &Told, setting: Setting) -> Result<Cloth, rapier_cloth::ClothError> {
+    let places = told.positions.iter();
+    let places: Vec<rapier_cloth::Vec3> = places
+        .map(|place| rapier_cloth::Vec3::from_array(*place))
+        .collect();
+    let mut mesh = ClothMesh::new(places.clone(), told.triangles.clone())?;
     let sorted = |a: u32, b: u32| [a.min(b), a.max(b)];
     let springs = told.springs.iter().zip(&told.compliances);
     let compliances: BTreeMap<[u32; 2], f32> = springs
-        .map(|(&[a, b], compliance)| (sorted(of(a), of(b)), *compliance))
+        .map(|(&[a, b], compliance)| (sorted(a, b), *compliance))
         .collect();
     let hinges = told.hinges.iter();
     let stiffnesses: BTreeMap<[u32; 2], f32> = hinges
         .map(|hinge| {
             let [a, b, ..] = hinge.vertices;
-            (sorted(of(a), of(b)), hinge.stiffness)
+            (sorted(a, b), hinge.stiffness)
         })
         .collect();
     // Each edge and each fold has what the scene's list says.
@@ -205,7 +189,7 @@ fn cloth(
     };
     let mut cloth = Cloth::new(mesh, material)?;
     for &pin in &told.pinned {
-        cloth.pin(of(pin), places[of(pin) as usize])?;
+        cloth.pin(pin, places[pin as usize])?;
     }
     Ok(cloth)
 }

@@ -66,18 +66,7 @@ pub fn run(is_quick: bool, only: &str) -> Result<(Vec<GameRow>, record::Header),
     let (mut rows, mut left_out, mut checks) = (Vec::new(), Vec::new(), Vec::new());
     for game in Game::all() {
         println!("{}", game.name);
-        let truths = players::references().map(|player| outcome(&game, &player, 0));
-        let [truth, coarser] = truths;
-        let (truth, coarser) = (truth?, coarser?);
-        let rest = volume_at_rest(&game);
-        if game.is_balloon() {
-            let off = (coarser.volume - truth.volume).abs() / rest;
-            checks.push(format!("{off:.5} of the balloon's volume"));
-        }
-        if !game.has_colliders() {
-            let off = 1.0e3 * (coarser.height - truth.height).abs();
-            checks.push(format!("{off:.2} mm of the hung mesh's height"));
-        }
+        let truth = truth(&game, &mut checks)?;
         let mut all = players::all(&game, is_quick);
         all.retain(|player| player.solver.contains(only));
         let outcomes = turns(game.name, &all, starts, &mut left_out, |player, start| {
@@ -85,7 +74,7 @@ pub fn run(is_quick: bool, only: &str) -> Result<(Vec<GameRow>, record::Header),
         });
         for (player, outcomes) in all.iter().zip(&outcomes) {
             if !outcomes.is_empty() {
-                let row = row(&game, player, outcomes, &truth);
+                let row = row(&game, player, outcomes, truth.as_ref());
                 print(&row);
                 rows.push(row);
             }
@@ -99,6 +88,23 @@ pub fn run(is_quick: bool, only: &str) -> Result<(Vec<GameRow>, record::Header),
     header.push(("starts", format!("{starts}, solvers in turns")));
     record::push_left_out(&mut header, left_out);
     Ok((rows, header))
+}
+
+/// What many sub-steps make of a scene that is compared, and what half as many differ by.
+fn truth(game: &Game, checks: &mut Vec<String>) -> Result<Option<Outcome>, String> {
+    if !game.is_compared() {
+        return Ok(None);
+    }
+    let [truth, coarser] = players::references().map(|player| outcome(game, &player, 0));
+    let (truth, coarser) = (truth?, coarser?);
+    checks.push(if game.is_balloon() {
+        let off = (coarser.volume - truth.volume).abs() / volume_at_rest(game);
+        format!("{off:.5} of the balloon's volume")
+    } else {
+        let off = 1.0e3 * (coarser.height - truth.height).abs();
+        format!("{off:.2} mm of the hung mesh's height")
+    });
+    Ok(Some(truth))
 }
 
 fn outcome(game: &Game, player: &Player, start: u32) -> Result<Outcome, String> {
@@ -118,13 +124,17 @@ fn volume_at_rest(game: &Game) -> f64 {
 }
 
 /// The smallest times of all starts, and of all else the medians.
-fn row(game: &Game, player: &Player, outcomes: &[Outcome], truth: &Outcome) -> GameRow {
+fn row(game: &Game, player: &Player, outcomes: &[Outcome], truth: Option<&Outcome>) -> GameRow {
     let smallest = |ms: fn(&Milliseconds) -> f64| {
         let each = outcomes.iter().map(|outcome| ms(&outcome.ms));
         each.fold(f64::INFINITY, f64::min)
     };
     let middle = |value: &dyn Fn(&Outcome) -> f64| median(outcomes.iter().map(value));
     let some = |is_there: bool, value: &dyn Fn(&Outcome) -> f64| is_there.then(|| middle(value));
+    let off = |is_there: bool, value: fn(&Outcome) -> f64| {
+        let truth = value(truth?);
+        some(is_there, &|outcome| (value(outcome) - truth).abs())
+    };
     let (rest, has_bodies) = (volume_at_rest(game), game.has_colliders());
     GameRow {
         scene: game.name.into(),
@@ -138,12 +148,8 @@ fn row(game: &Game, player: &Player, outcomes: &[Outcome], truth: &Outcome) -> G
         depth_m: some(has_bodies, &|outcome| outcome.depths[0]),
         triangles_depth_m: some(has_bodies, &|outcome| outcome.depths[1]),
         volume: some(game.is_balloon(), &|outcome| outcome.volume / rest),
-        height_error_m: some(!has_bodies, &|outcome| {
-            (outcome.height - truth.height).abs()
-        }),
-        volume_error: some(game.is_balloon(), &|outcome| {
-            (outcome.volume - truth.volume).abs() / rest
-        }),
+        height_error_m: off(!game.is_balloon(), |outcome| outcome.height),
+        volume_error: off(game.is_balloon(), |outcome| outcome.volume).map(|off| off / rest),
     }
 }
 

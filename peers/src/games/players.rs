@@ -27,11 +27,7 @@ pub fn all(game: &Game, is_quick: bool) -> Vec<Player> {
         setting: "default".into(),
         way: Way::Ours(Substepping::Automatic, NarrowPhase::Auto),
     }];
-    let counts: &[u32] = if is_quick {
-        &[20]
-    } else {
-        &[10, 20, 40, 80, 200]
-    };
+    let counts: &[u32] = if is_quick { &[20] } else { &[10, 20, 40, 80] };
     all.extend(counts.iter().map(|&count| ours(count)));
     all.extend(of_jolt(game, is_quick));
     all.extend(of_rapier(game, is_quick));
@@ -82,7 +78,7 @@ fn of_jolt(game: &Game, is_quick: bool) -> Vec<Player> {
         .collect();
     all.push(player(", as documented", documented(5)));
     if game.has_pins() {
-        let counts: &[u32] = if is_quick { &[20] } else { &[5, 10, 20, 40] };
+        let counts: &[u32] = if is_quick { &[20] } else { &[10, 20, 40] };
         let tethered = |&count: &u32| player(", tethers", tethered(count));
         all.extend(counts.iter().map(tethered));
     }
@@ -90,43 +86,25 @@ fn of_jolt(game: &Game, is_quick: bool) -> Vec<Player> {
 }
 
 fn of_rapier(game: &Game, is_quick: bool) -> Vec<Player> {
-    let player = |name: &str, setting: rapier::Setting| Player {
+    let player = |substeps: u32, iterations: usize, is_rigid: bool| Player {
         solver: RAPIER,
         setting: format!(
-            "{} × {} iterations{name}",
-            setting.substeps, setting.iterations
+            "{substeps} × {iterations} iterations{}",
+            if is_rigid { ", rigid" } else { "" }
         ),
-        way: Way::Rapier(setting),
+        way: Way::Rapier(rapier::Setting {
+            substeps,
+            iterations,
+            is_rigid,
+        }),
     };
-    let cotton = |(substeps, iterations)| rapier::Setting {
-        substeps,
-        iterations,
-        is_rigid: false,
-        is_shuffled: false,
-    };
-    let counts: &[(u32, usize)] = if is_quick {
-        &[(4, 8)]
-    } else {
-        &[(4, 8), (10, 4), (20, 2), (40, 1), (40, 4)]
-    };
-    let mut all: Vec<Player> = counts
-        .iter()
-        .map(|&count| player("", cotton(count)))
-        .collect();
-    // Its own default: rigid edges. Of a balloon they would be another material.
-    if !game.is_balloon() {
-        let counts: &[(u32, usize)] = if is_quick {
-            &[(4, 8)]
-        } else {
-            &[(4, 8), (20, 2)]
-        };
-        all.extend(counts.iter().map(|&count| {
-            let rigid = rapier::Setting {
-                is_rigid: true,
-                ..cotton(count)
-            };
-            player(", rigid", rigid)
-        }));
+    // Rigid edges are its own default, and with pins its best: only then it bounds the distance from them.
+    let mut all = vec![player(4, 8, false)];
+    if game.has_pins() {
+        all.push(player(4, 8, true));
+    }
+    if !is_quick {
+        all.push(player(16, 2, game.has_pins()));
     }
     all
 }

@@ -134,6 +134,11 @@ impl Game {
         self.gas > 0.0
     }
 
+    /// Whether there is a truth: where it ends does not depend on each touch.
+    pub fn is_compared(&self) -> bool {
+        self.is_balloon() || !self.has_colliders()
+    }
+
     pub fn has_pins(&self) -> bool {
         !self.pinned.is_empty()
     }
