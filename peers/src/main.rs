@@ -58,6 +58,9 @@ struct Options {
     /// A short run: one start, few settings
     #[arg(long)]
     quick: bool,
+    /// Starts of each solver, in place of five for sheets, three for games, and one in a short run
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
+    starts: Option<u32>,
     /// Folder of the CSV file, made if it is not there
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -67,6 +70,14 @@ struct Options {
     /// Only solvers whose name contains this
     #[arg(long, value_name = "NAME", default_value = "")]
     only: String,
+}
+
+impl Options {
+    /// How often each solver starts, if that was not asked for and the run is not short.
+    fn starts(&self, whole: u32) -> u32 {
+        let usual = if self.quick { 1 } else { whole };
+        self.starts.unwrap_or(usual)
+    }
 }
 
 fn main() -> ExitCode {
@@ -83,7 +94,7 @@ fn run(options: &Options) -> Result<(), String> {
     fs::create_dir_all(&options.out)
         .map_err(|error| format!("{}: {error}", options.out.display()))?;
     if options.games {
-        let (rows, settings) = games::run(options.quick, &options.only)?;
+        let (rows, settings) = games::run(options.quick, options.starts(3), &options.only)?;
         return write(options, "peers_games.csv", settings, &rows);
     }
     let folder = std::env::temp_dir().join(format!("bevy_drape_peers_{}", std::process::id()));
@@ -92,7 +103,7 @@ fn run(options: &Options) -> Result<(), String> {
         None => None,
     };
     let packages = python.as_ref().map(Python::versions).transpose()?;
-    let starts = if options.quick { 1 } else { 5 };
+    let starts = options.starts(5);
     let (mut rows, mut left_out) = (Vec::new(), Vec::new());
     for scene in Scene::ALL {
         println!("{}", scene.name);

@@ -57,12 +57,15 @@ impl Outcome {
     }
 }
 
-/// Plays all scenes by all solvers whose names contain `only`, and returns rows, and what else the header says.
+/// Plays all scenes from so many starts by all solvers whose names contain `only`, and returns rows, and what else the header says.
 ///
 /// # Errors
 /// If the plugin itself can't play a scene.
-pub fn run(is_quick: bool, only: &str) -> Result<(Vec<GameRow>, record::Header), String> {
-    let starts = if is_quick { 1 } else { 3 };
+pub fn run(
+    is_quick: bool,
+    starts: u32,
+    only: &str,
+) -> Result<(Vec<GameRow>, record::Header), String> {
     let (mut rows, mut left_out, mut checks) = (Vec::new(), Vec::new(), Vec::new());
     for game in Game::all() {
         println!("{}", game.name);
