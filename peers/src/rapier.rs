@@ -141,7 +141,7 @@ impl Frames for RapierCloth {
     fn places(&mut self) -> Places {
         let cloth = self.cloths.cloth(self.cloth).expect("it was added");
         let places = cloth.positions().iter();
-        places.map(|place| place.to_array()).collect()
+        places.map(rapier_cloth::Vec3::to_array).collect()
     }
 }
 
