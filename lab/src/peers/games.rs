@@ -150,7 +150,7 @@ fn chart(rows: &[GameRow]) -> Chart {
     let mut chart = Chart::new(
         "peers_games",
         title,
-        "Meshes of cotton, 60 frames a second, one thread, CPU time, smallest of three starts. Stretch: of edges in the last third of four seconds, median. Numbers: sub-steps or iterations, or sub-steps × iterations. What blows up is not drawn.",
+        "Meshes of cotton, 60 frames a second, one thread, CPU time. Stretch: of edges in the last third of four seconds. Numbers: sub-steps or iterations, or sub-steps × iterations. What blows up is not drawn.",
     )
     .sized([960, 900])
     .columns(2);
@@ -183,7 +183,7 @@ fn chart(rows: &[GameRow]) -> Chart {
             [row.ms_per_frame.min(low), row.ms_per_frame.max(high)]
         });
         let line = [low, high].map(|ms| [ms, 100.0 * limit]);
-        panel = panel.with(Series::new("limit", Look::Ink, Kind::Line, line));
+        panel = panel.with(Series::new("limit", Look::Grey, Kind::Line, line));
         chart = chart.with(panel);
     }
     chart
