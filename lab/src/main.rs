@@ -104,6 +104,9 @@ enum Name {
     Hung,
     /// Other solvers in the same scenes, measured by the package `peers`
     Peers,
+    /// Other solvers in scenes of games, measured by the package `peers`
+    #[value(name = "peers_games")]
+    PeersGames,
     /// Order of accuracy: error against sub-step
     Convergence,
     /// Periods of sheets and membranes, and the sag of a strip, against closed forms
@@ -120,7 +123,7 @@ enum Name {
 
 type Conduct = fn(&mut Run, &Output) -> Result<(), String>;
 
-const EXPERIMENTS: [(Name, Conduct); 19] = [
+const EXPERIMENTS: [(Name, Conduct); 20] = [
     (Name::Table1, conduct::<table1::Table1>),
     (Name::Frames, conduct::<frames::Frames>),
     (Name::Calls, conduct::<calls::Calls>),
@@ -135,6 +138,7 @@ const EXPERIMENTS: [(Name, Conduct); 19] = [
     (Name::Pareto, conduct::<pareto::Pareto>),
     (Name::Hung, conduct::<hung::Hung>),
     (Name::Peers, conduct::<peers::Peers>),
+    (Name::PeersGames, conduct::<peers::PeersGames>),
     (Name::Convergence, conduct::<convergence::Convergence>),
     (Name::Waves, conduct::<waves::Waves>),
     (Name::Bending, conduct::<bending::Bending>),

@@ -5,8 +5,9 @@ use bevy_drape::cloth::Spring;
 use crate::{
     outcome::Places,
     player::Frames,
-    scene::{COMPARED, FRAME, NEARLY_RIGID, Scene},
+    scene::{COMPARED, NEARLY_RIGID, Scene},
     shared::{exact::Exact, sheet::Sheet},
+    told::FRAME,
 };
 
 pub struct Explicit {
@@ -24,8 +25,9 @@ impl Explicit {
 }
 
 impl Frames for Explicit {
-    fn step(&mut self) {
+    fn step(&mut self) -> Result<(), String> {
         self.exact.advance(f64::from(FRAME), self.steps);
+        Ok(())
     }
 
     fn places(&mut self) -> Places {

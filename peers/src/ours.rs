@@ -8,38 +8,55 @@ use bevy::{
     prelude::*,
     time::TimeUpdateStrategy,
 };
-use bevy_drape::{prelude::*, solver::ClothSettings};
-
-use crate::{
-    outcome::Places,
-    player::Frames,
-    scene::{FRAME, Hung, SIDE, Scene, WIDTH},
+use bevy_drape::{
+    prelude::*,
+    solver::{ClothPressure, ClothSettings, Substepping},
 };
 
-pub struct Ours(App);
+use crate::{
+    collider::{Collider, Shape},
+    outcome::Places,
+    player::Frames,
+    told::{FRAME, Garment, Told, order},
+};
+
+/// The pressure around a gas (Pa), which the plugin always has. Others have none.
+const OUTSIDE: f32 = 0.1;
+
+pub struct Ours {
+    app: App,
+    moving: Vec<(Entity, Collider)>,
+    /// The particle of each vertex.
+    order: Vec<usize>,
+    frame: u32,
+}
 
 impl Ours {
-    /// With so many sub-steps a frame.
-    pub fn new(scene: &Scene, substeps: u32, narrow_phase: NarrowPhase, start: u32) -> Self {
+    pub fn new(
+        garment: &Garment,
+        told: &Told,
+        substepping: Substepping,
+        narrow_phase: NarrowPhase,
+    ) -> Self {
         let mut app = app();
-        let pins = match scene.hung {
-            Hung::TwoCorners => Pins::new([Corner::TopLeft, Corner::TopRight].map(Pin::Corner)),
-            Hung::TopRow => Pins::top_row(),
-            Hung::Nowhere => Pins::none(),
-        };
         let settings = ClothSettings {
-            // No solver is told to keep a distance between cloth and ball.
-            particle_radius: 0.0,
+            substepping,
+            particle_radius: told.margin,
             sleeps: false,
-            ..ClothSettings::substeps(substeps)
+            ..ClothSettings::default()
         };
-        let cloth = Cloth::new(SIDE, SIDE, WIDTH / (SIDE - 1) as f32);
+        let cloth = (garment.cloth.clone(), garment.pins.clone());
         let world = app.world_mut();
         let cloth = world
-            .spawn((cloth, pins, settings, scene.material(), narrow_phase))
+            .spawn((cloth, settings, garment.material, narrow_phase))
             .id();
-        if let Some(radius) = scene.ball {
-            world.spawn((ClothCollider::ball(radius), Transform::default()));
+        let mut moving = Vec::new();
+        for collider in &told.colliders {
+            let place = Transform::from_isometry((collider.at)(0.0));
+            let entity = world.spawn((shape(collider.shape), place)).id();
+            if collider.moves {
+                moving.push((entity, *collider));
+            }
         }
         // The first update of an app has no time in it; the second makes the particles, at rest until there is gravity.
         app.update();
@@ -47,34 +64,58 @@ impl Ours {
         app.update();
         app.insert_resource(ClothGravity::default());
         let mut cloth = app.world_mut().entity_mut(cloth);
+        if told.gas > 0.0 {
+            cloth.insert(ClothPressure::Gas {
+                volume: told.gas / OUTSIDE,
+                outside: OUTSIDE,
+            });
+        }
+        let order = order(&garment.surface());
         let mut particles = cloth
             .get_mut::<ClothParticles>()
             .expect("the plugin makes them");
-        for row in 0..SIDE {
-            for column in 0..SIDE {
-                let place = scene.place(row, column, start);
-                particles
-                    .set_position((row, column), place)
-                    .expect("it exists");
-            }
+        for (&particle, place) in order.iter().zip(&told.positions) {
+            particles
+                .set_position(particle, Vec3::from_array(*place))
+                .expect("it exists");
         }
-        Self(app)
+        Self {
+            app,
+            moving,
+            order,
+            frame: 0,
+        }
     }
 }
 
 impl Frames for Ours {
-    fn step(&mut self) {
-        self.0.update();
+    fn step(&mut self) -> Result<(), String> {
+        self.frame += 1;
+        for (entity, collider) in &self.moving {
+            let place = (collider.at)(self.frame as f32 * FRAME);
+            let mut entity = self.app.world_mut().entity_mut(*entity);
+            entity.insert(Transform::from_isometry(place));
+        }
+        self.app.update();
+        Ok(())
     }
 
     fn places(&mut self) -> Places {
-        let world = self.0.world_mut();
+        let world = self.app.world_mut();
         let mut cloths = world.query::<&ClothParticles>();
         let particles = cloths.single(world).expect("there is one cloth");
-        particles
-            .positions()
-            .map(|place| place.to_array())
-            .collect()
+        let place = |particle: &usize| particles.position(*particle).expect("it exists");
+        let places = self.order.iter().map(place);
+        places.map(|place| place.to_array()).collect()
+    }
+}
+
+fn shape(shape: Shape) -> ClothCollider {
+    match shape {
+        Shape::Ball(radius) => ClothCollider::ball(radius),
+        Shape::Capsule { radius, length } => ClothCollider::capsule(radius, length),
+        Shape::Cuboid(sides) => ClothCollider::cuboid(sides.x, sides.y, sides.z),
+        Shape::Floor => ClothCollider::plane(),
     }
 }
 

@@ -1,59 +1,70 @@
 //! Solvers with their settings, and how each plays a scene.
 
-use bevy_drape::contact::NarrowPhase;
+use bevy_drape::{contact::NarrowPhase, solver::Substepping};
 use cpu_time::ProcessTime;
+use oxijolt::LongRangeAttachment;
 
 use crate::{
     explicit::Explicit,
     jolt::{self, Jolt},
     ours::Ours,
-    outcome::{Places, Play},
+    outcome::{Milliseconds, Places, Play},
     python::Python,
+    rapier::{self, RapierCloth},
     row::{EXPLICIT, OURS, SOLVERS},
     scene::{COMPARED, FRAMES, LAST, Scene},
+    told::{Garment, Told},
 };
 
 /// A solver in the middle of a scene.
 pub trait Frames {
     /// Goes on by a frame.
-    fn step(&mut self);
+    ///
+    /// # Errors
+    /// What it can't go on from.
+    fn step(&mut self) -> Result<(), String>;
 
-    /// Where all particles are.
+    /// Where all vertices are.
     fn places(&mut self) -> Places;
 }
 
-/// Plays a scene to its end. Only steps are timed.
-fn play(mut frames: impl Frames) -> Play {
-    let mut seconds = 0.0;
-    let (mut compared, mut last) = (Vec::new(), Vec::new());
-    for frame in 1..=FRAMES {
+/// Plays so many frames. Only steps are timed. The places of so many last frames are told.
+///
+/// # Errors
+/// What the solver can't go on from, and when.
+pub fn play(frames: &mut dyn Frames, count: u32, last: u32) -> Result<Play, String> {
+    let mut ms = Vec::new();
+    let (mut compared, mut lasts) = (Vec::new(), Vec::new());
+    for frame in 1..=count {
         let clock = ProcessTime::now();
-        frames.step();
-        seconds += clock.elapsed().as_secs_f64();
+        let outcome = frames.step();
+        ms.push(1.0e3 * clock.elapsed().as_secs_f64());
+        outcome.map_err(|error| format!("frame {frame}: {error}"))?;
         if frame == COMPARED {
             compared = frames.places();
         }
-        if frame + LAST > FRAMES {
-            last.push(frames.places());
+        if frame + last > count {
+            lasts.push(frames.places());
         }
     }
-    Play {
-        ms: 1.0e3 * seconds / f64::from(FRAMES),
+    Ok(Play {
+        ms: Milliseconds::new(ms),
         compared,
-        last,
-    }
+        last: lasts,
+    })
 }
 
 /// A solver with its settings.
 pub struct Player {
     pub solver: &'static str,
     pub setting: String,
-    way: Way,
+    pub way: Way,
 }
 
-enum Way {
-    Ours(u32, NarrowPhase),
+pub enum Way {
+    Ours(Substepping, NarrowPhase),
     Jolt(jolt::Setting),
+    Rapier(rapier::Setting),
     Explicit(u32),
     /// By its name in the script.
     Python(&'static str),
@@ -71,20 +82,21 @@ impl Player {
         all.extend(ours.iter().map(|&count| Self {
             solver: OURS,
             setting: format!("{count} sub-steps"),
-            way: Way::Ours(count, NarrowPhase::Auto),
+            way: Way::Ours(Substepping::Fixed(count), NarrowPhase::Auto),
         }));
         if scene.ball.is_some() {
             all.push(Self {
                 solver: OURS,
                 setting: "20 sub-steps, triangles".into(),
-                way: Way::Ours(20, NarrowPhase::Triangles),
+                way: Way::Ours(Substepping::Fixed(20), NarrowPhase::Triangles),
             });
         }
         let best = |iterations| jolt::Setting {
             iterations,
+            is_generated: false,
             is_shuffled: true,
             late_pins: true,
-            tethers: false,
+            tethers: None,
         };
         let documented = |iterations| jolt::Setting {
             is_shuffled: false,
@@ -93,7 +105,7 @@ impl Player {
         };
         let tethered = |iterations| jolt::Setting {
             late_pins: false,
-            tethers: true,
+            tethers: Some(LongRangeAttachment::EuclideanDistance),
             ..best(iterations)
         };
         let jolt = |name: &str, setting: jolt::Setting| Self {
@@ -160,7 +172,7 @@ impl Player {
     /// Whether it has the scene's springs, and not a material like them.
     pub fn has_same_springs(&self, scene: &Scene) -> bool {
         match self.way {
-            Way::Ours(..) | Way::Jolt(_) | Way::Explicit(_) => true,
+            Way::Ours(..) | Way::Jolt(_) | Way::Rapier(_) | Way::Explicit(_) => true,
             // Of rigid threads VBD makes triangles.
             Way::Python("vbd") => scene.compliance > 0.0,
             Way::Python(name) => name == "pypbd" || name == "xpbd",
@@ -176,16 +188,33 @@ impl Player {
     /// # Errors
     /// What went wrong in the script.
     pub fn play(&self, scene: &Scene, python: Option<&Python>, start: u32) -> Result<Play, String> {
-        match &self.way {
-            Way::Ours(substeps, narrow_phase) => {
-                Ok(play(Ours::new(scene, *substeps, *narrow_phase, start)))
+        let mut frames = match &self.way {
+            Way::Python(name) => {
+                let python = python.ok_or("no interpreter was given by --python")?;
+                return python.play(scene, name, &self.setting, start);
             }
-            Way::Jolt(setting) => Ok(play(Jolt::new(scene, *setting, start))),
-            Way::Explicit(steps) => Ok(play(Explicit::new(scene, *steps, start))),
-            Way::Python(name) => match python {
-                Some(python) => python.play(scene, name, &self.setting, start),
-                None => Err("no interpreter was given by --python".into()),
-            },
-        }
+            Way::Explicit(steps) => Box::new(Explicit::new(scene, *steps, start)),
+            way => way.begin(&scene.garment(), &scene.told(start))?,
+        };
+        play(&mut *frames, FRAMES, LAST)
+    }
+}
+
+impl Way {
+    /// A solver of this program that begins a scene of any mesh.
+    ///
+    /// # Errors
+    /// What it refuses.
+    pub fn begin(&self, garment: &Garment, told: &Told) -> Result<Box<dyn Frames>, String> {
+        Ok(match self {
+            Self::Ours(substepping, narrow_phase) => {
+                Box::new(Ours::new(garment, told, *substepping, *narrow_phase))
+            }
+            Self::Jolt(setting) => Box::new(Jolt::new(told, *setting)?),
+            Self::Rapier(setting) => Box::new(RapierCloth::new(told, *setting)?),
+            Self::Explicit(_) | Self::Python(_) => {
+                return Err("it only knows the sheets".into());
+            }
+        })
     }
 }

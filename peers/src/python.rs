@@ -6,10 +6,26 @@ use std::{
     process::Command,
 };
 
+use serde::Serialize;
+
 use crate::{
-    outcome::{Places, Play},
-    scene::{LAST, SIDE, Scene},
+    outcome::{Milliseconds, Places, Play},
+    scene::{LAST, SIDE, Scene, WIDTH},
+    told::Told,
 };
+
+/// What the script reads: a square sheet, and maybe a ball.
+#[derive(Serialize)]
+struct Sheet<'a> {
+    scene: &'a str,
+    side: u32,
+    /// m
+    width: f32,
+    /// Radius (m) of the ball around the origin.
+    ball: Option<f32>,
+    #[serde(flatten)]
+    told: &'a Told,
+}
 
 /// An interpreter that has the packages.
 pub struct Python {
@@ -52,7 +68,14 @@ impl Python {
     ) -> Result<Play, String> {
         let told = self.folder.join("scene.json");
         let places = self.folder.join("places.f32");
-        let text = serde_json::to_string(&scene.told(start)).map_err(|error| error.to_string())?;
+        let sheet = Sheet {
+            scene: scene.name,
+            side: SIDE,
+            width: WIDTH,
+            ball: scene.ball,
+            told: &scene.told(start),
+        };
+        let text = serde_json::to_string(&sheet).map_err(|error| error.to_string())?;
         fs::write(&told, text).map_err(|error| format!("{}: {error}", told.display()))?;
         let [told, written] = [&told, &places].map(|path| path.to_string_lossy().into_owned());
         let said = self.run(&["play", solver, setting, &told, &written])?;
@@ -69,7 +92,11 @@ impl Python {
         }
         let last = frames.split_off(1);
         let compared = frames.pop().unwrap_or_default();
-        Ok(Play { ms, compared, last })
+        Ok(Play {
+            ms: Milliseconds::mean_only(ms),
+            compared,
+            last,
+        })
     }
 
     fn run(&self, arguments: &[&str]) -> Result<String, String> {

@@ -2,15 +2,25 @@
 
 use std::{fs::File, io::Write, path::Path, process::Command};
 
+use serde::Serialize;
 use sysinfo::System;
 
-use crate::row::Row;
+/// Names and values that stand before the rows.
+pub type Header = Vec<(&'static str, String)>;
+
+/// Adds what could not be measured, once each.
+pub fn push_left_out(header: &mut Header, mut left_out: Vec<String>) {
+    left_out.dedup();
+    if !left_out.is_empty() {
+        header.push(("left out", left_out.join("; ")));
+    }
+}
 
 /// Writes rows, with lines that begin with # before them.
 ///
 /// # Errors
 /// If the file can't be written.
-pub fn write(path: &Path, settings: &[(&str, String)], rows: &[Row]) -> Result<(), String> {
+pub fn write<R: Serialize>(path: &Path, settings: &Header, rows: &[R]) -> Result<(), String> {
     let fail = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
     let mut file = File::create(path).map_err(|error| fail(&error))?;
     for (name, value) in settings {
@@ -47,7 +57,7 @@ pub fn versions() -> String {
         let (_, after) = lock.split_once(&format!("name = \"{name}\"\nversion = \""))?;
         Some(format!("{name} {}", after.split_once('"')?.0))
     };
-    let mut versions: Vec<String> = ["bevy_drape", "bevy", "oxijolt"]
+    let mut versions: Vec<String> = ["bevy_drape", "bevy", "oxijolt", "rapier-cloth"]
         .into_iter()
         .filter_map(locked)
         .collect();

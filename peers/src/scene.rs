@@ -1,13 +1,17 @@
 //! The scenes: a square cloth that hangs by two corners, one of soft springs that hangs by its top row, and one that falls on
 //! a ball.
 
-use bevy::math::Vec3;
-use bevy_drape::{cloth::ClothMaterial, solver::TickStep};
-use serde::Serialize;
+use bevy::math::{Isometry3d, Vec3};
+use bevy_drape::{
+    cloth::{Cloth, ClothMaterial, Corner, Pin, Pins},
+    solver::TickStep,
+};
 
 use crate::{
+    collider::{Collider, Shape},
     row::{BALL, CORNERS, ROW},
-    shared::sheet::{GRAVITY, Sheet, threads},
+    shared::sheet::{Sheet, threads},
+    told::{FRAME, Garment, NUDGE, Told},
 };
 
 /// Particles along a side, and its length (m).
@@ -21,14 +25,8 @@ pub const LAST: u32 = 60;
 /// The frame after which the places of particles are compared with the reference's: half a second.
 pub const COMPARED: u32 = 30;
 
-/// Length of a frame (s).
-pub const FRAME: f32 = 1.0 / 60.0;
-
 /// Coulomb's μ of cloth on the ball.
 pub const FRICTION: f32 = 0.3;
-
-/// How far one particle is moved in each start (m): what is a draw has to differ.
-const NUDGE: f32 = 1.0e-6;
 
 /// What the reference has in place of rigid springs (m/N): the whole cloth's weight stretches one of them by 20 millionths.
 pub const NEARLY_RIGID: f32 = 1.0e-7;
@@ -153,78 +151,41 @@ impl Scene {
         )
     }
 
-    /// All that a solver has to know, with the springs that it shall have.
-    pub fn told(&self, start: u32) -> Told {
-        let sheet = self.sheet_of(self.compliance, start);
-        let free = self.sheet_of_free_masses();
-        let springs = || sheet.springs.iter();
-        Told {
-            scene: self.name.into(),
-            side: SIDE,
-            width: WIDTH,
-            frames: FRAMES,
-            frame: FRAME,
-            gravity: GRAVITY as f32,
-            friction: FRICTION,
-            ball: self.ball,
-            pinned: sheet
-                .particles
-                .inverse_masses()
-                .enumerate()
-                .filter(|(_, inverse_mass)| *inverse_mass == 0.0)
-                .map(|(index, _)| index as u32)
-                .collect(),
-            positions: sheet
-                .particles
-                .positions()
-                .map(|place| place.to_array())
-                .collect(),
-            masses: free,
-            springs: springs().map(|spring| spring.ends).collect(),
-            compliances: springs().map(|spring| spring.compliance).collect(),
-            triangles: triangles(),
+    /// The cloth as the plugin has it.
+    pub fn garment(&self) -> Garment {
+        let pins = match self.hung {
+            Hung::TwoCorners => Pins::new([Corner::TopLeft, Corner::TopRight].map(Pin::Corner)),
+            Hung::TopRow => Pins::top_row(),
+            Hung::Nowhere => Pins::none(),
+        };
+        Garment {
+            cloth: Cloth::new(SIDE, SIDE, WIDTH / (SIDE - 1) as f32),
+            pins,
+            material: self.material(),
         }
     }
 
-    /// Mass of each particle (kg), as if none were pinned.
-    fn sheet_of_free_masses(&self) -> Vec<f32> {
-        let free = Self {
-            hung: Hung::Nowhere,
-            ..*self
+    /// All that a solver has to know, with the springs that it shall have.
+    pub fn told(&self, start: u32) -> Told {
+        let cells = || (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column)));
+        let ball = |radius| Collider {
+            shape: Shape::Ball(radius),
+            at: |_| Isometry3d::IDENTITY,
+            moves: false,
         };
-        let sheet = free.sheet_of(self.compliance, 0);
-        sheet
-            .particles
-            .inverse_masses()
-            .map(|inverse_mass| 1.0 / inverse_mass)
-            .collect()
+        Told {
+            pinned: cells()
+                .zip(0..)
+                .filter(|((row, column), _)| self.hung.holds(*row, *column))
+                .map(|(_, index)| index)
+                .collect(),
+            positions: cells()
+                .map(|(row, column)| self.place(row, column, start).to_array())
+                .collect(),
+            colliders: self.ball.map(ball).into_iter().collect(),
+            ..Told::new(&self.garment(), triangles(), FRAMES)
+        }
     }
-}
-
-/// A scene as plain lists: what other solvers are set up from, in Rust or Python.
-#[derive(Serialize)]
-pub struct Told {
-    pub scene: String,
-    pub side: u32,
-    /// m
-    pub width: f32,
-    pub frames: u32,
-    /// s
-    pub frame: f32,
-    /// m/s², along −y
-    pub gravity: f32,
-    pub friction: f32,
-    /// Radius (m) of the ball around the origin.
-    pub ball: Option<f32>,
-    pub pinned: Vec<u32>,
-    /// m
-    pub positions: Vec<[f32; 3]>,
-    /// kg
-    pub masses: Vec<f32>,
-    pub springs: Vec<[u32; 2]>,
-    /// m/N
-    pub compliances: Vec<f32>,
-    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Two for each square of particles, with normals up.

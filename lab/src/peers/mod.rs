@@ -2,8 +2,11 @@
 //!
 //! It is a package of its own, as no lab has to build and download other solvers: `peers/run` measures, and then calls this.
 
+mod game_row;
+mod games;
 mod row;
 
+pub use self::games::PeersGames;
 use self::row::{BALL, CORNERS, EXPLICIT, OURS, ROW, Row, SOLVERS};
 use crate::{
     chart::{Axis, Chart, Kind, Look, Panel, Series},
@@ -151,7 +154,11 @@ const AS_GOOD: f64 = 0.1;
 const BLOWN_UP: f64 = 100.0;
 
 fn is_blown_up(row: &Row) -> bool {
-    let is_cloth = row.max_stretch < BLOWN_UP;
+    is_blown_up_by(row.max_stretch)
+}
+
+fn is_blown_up_by(stretch: f64) -> bool {
+    let is_cloth = stretch < BLOWN_UP;
     !is_cloth
 }
 
