@@ -749,6 +749,16 @@ fn layers_are_as_thick_as_their_map() {
     for sheet in sheets {
         change::<ClothMaterialMap>(&mut app, sheet, |map| map.thickness = default());
     }
+    // They come apart by no more than 0.25 m/s.
+    for _ in 0..10 {
+        tick(&mut app, 1);
+        for sheet in sheets {
+            let all = particles(&app, sheet);
+            let speeds = (0..all.len()).filter_map(|index| all.velocity(index));
+            let fastest = speeds.map(Vec3::length).fold(0.0, f32::max);
+            assert!(fastest < 0.5, "{fastest} m/s");
+        }
+    }
     tick(&mut app, 400);
     expect(&app, [1.0, 1.0]);
     // One of both is thin.
