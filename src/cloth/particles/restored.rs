@@ -22,7 +22,11 @@ impl ClothParticles {
     /// then rebuilt.
     pub(super) fn valid_layout(&self) -> Layout {
         let is_valid = self.layout.is_valid() && self.blocks.len() == self.layout.blocks();
-        is_valid.then_some(self.layout).unwrap_or_default()
+        if is_valid {
+            self.layout
+        } else {
+            Default::default()
+        }
     }
 
     /// Replaces an invalid sub-step with the default.

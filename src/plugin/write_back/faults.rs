@@ -42,7 +42,7 @@ pub(crate) fn log_faults(faults: Query<(Named, &ClothFault), Changed<ClothFault>
         match others.filter(is_like).count() {
             0 => error!("{name} is left out of the cloth simulation: {error}"),
             others => {
-                error!("{name} and {others} more are left out of the cloth simulation: {error}")
+                error!("{name} and {others} more are left out of the cloth simulation: {error}");
             }
         }
     }

@@ -82,8 +82,8 @@ fn what_touches_otherwise_than_before_is_searched_for_anew() {
     assert!(least > 0.031, "each vertex is pushed off a face: {least} m");
 }
 
-/// Layers that become thicker come apart slowly, however much thicker, on grids and meshes: a pair adds velocity only up to 0.25 m/s, of
-/// which each sheet takes a half, and springs add none to the mean.
+/// Layers that become thicker come apart slowly, however much thicker, on grids and meshes: a pair adds velocity only up to 0.25 m/s. Pairs
+/// that share particles may add as much again, and springs add none to the mean of a sheet.
 #[test]
 fn layers_that_become_thicker_are_not_thrown() {
     let mut draw = Draw(3);
@@ -108,7 +108,7 @@ fn layers_that_become_thicker_are_not_thrown() {
             }
         }
         println!("{case}: {fastest} m/s");
-        assert!((0.01..0.25).contains(&fastest), "{case}: {fastest} m/s");
+        assert!((0.01..0.5).contains(&fastest), "{case}: {fastest} m/s");
         assert_eq!(scene.worst, 0, "{case}");
     }
 }
