@@ -35,7 +35,7 @@ use crate::{
     cloth::{Cloth, ClothMaterial, ClothParticles, Surface},
     solver::SubStep,
 };
-pub(crate) use random::Random;
+pub(crate) use random::{Random, is_long};
 
 /// The only sub-step of a tick in which nothing moves by itself.
 const ONLY: SubStep = SubStep {

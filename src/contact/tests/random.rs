@@ -6,7 +6,7 @@ use proptest::prelude::ProptestConfig;
 use crate::contact::colliders::{ClothCollider, ColliderShape, MovingCollider};
 
 /// Whether tests are to run at their full length, which takes minutes: CI sets `BEVY_DRAPE_LONG`.
-fn is_long() -> bool {
+pub fn is_long() -> bool {
     std::env::var_os("BEVY_DRAPE_LONG").is_some()
 }
 

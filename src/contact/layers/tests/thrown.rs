@@ -3,6 +3,7 @@
 use bevy::math::Vec3;
 
 use super::{Scene, Sheeted, turned};
+use crate::contact::tests::is_long;
 
 /// Numbers from −1 to 1, as if drawn.
 pub(super) struct Draw(pub u32);
@@ -25,11 +26,7 @@ impl Draw {
 /// and irregular meshes of other resolutions, in any attitude, 2 to 16 mm thick, from 1 to 20 m/s.
 #[test]
 fn sheets_thrown_at_each_other_do_not_intersect() {
-    let every = if std::env::var_os("BEVY_DRAPE_LONG").is_some() {
-        1
-    } else {
-        20
-    };
+    let every = if is_long() { 1 } else { 20 };
     let mut touched = 0;
     for seed in (0..1000).step_by(every) {
         let mut draw = Draw(seed * 7919 + 1);
