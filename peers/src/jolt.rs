@@ -50,14 +50,14 @@ pub struct Jolt {
 
 impl Jolt {
     /// # Errors
-    /// What Jolt refuses.
+    /// The input that Jolt refuses.
     pub fn new(told: &Told, setting: Setting) -> Result<Self, String> {
         let vertices = if setting.is_shuffled {
             shuffled(told.positions.len())
         } else {
             (0..told.positions.len() as u32).collect()
         };
-        // What may move away from its origin lies around it.
+        // A body that may move away from its origin lies around it.
         let origin = if told.pinned.is_empty() {
             centre(&told.positions)
         } else {

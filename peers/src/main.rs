@@ -165,7 +165,7 @@ fn write<R: Serialize>(
     Ok(())
 }
 
-/// What comes of all players in a scene, from each start, in turns. What fails is said, and kept in `left_out`.
+/// The results of all players in a scene, from each start, in turns. A failure is printed, and kept in `left_out`.
 fn turns<O>(
     scene: &str,
     players: &[Player],

@@ -1,4 +1,4 @@
-//! What is measured of what a solver has done, alike for all of them.
+//! The measurements of a run, alike for all solvers.
 
 use bevy::math::DVec3;
 use bevy_drape::cloth::SpringKind;
@@ -12,7 +12,7 @@ pub type Places = Vec<[f32; 3]>;
 #[derive(Debug, Clone, Copy)]
 pub struct Milliseconds {
     pub mean: f64,
-    /// What a frame in a hundred exceeds, and the longest; NaN where only the mean is known.
+    /// The 99th percentile of all frames, and the longest; NaN where only the mean is known.
     pub p99: f64,
     pub max: f64,
 }
@@ -37,7 +37,7 @@ impl Milliseconds {
     }
 }
 
-/// What a solver has done with a scene.
+/// A run of a scene by a solver.
 pub struct Play {
     pub ms: Milliseconds,
     /// After half a second.
@@ -46,7 +46,7 @@ pub struct Play {
     pub last: Vec<Places>,
 }
 
-/// What came of it.
+/// The result of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Outcome {
     pub ms: f64,

@@ -21,7 +21,7 @@ pub trait Frames {
     /// Goes on by a frame.
     ///
     /// # Errors
-    /// What it can't go on from.
+    /// The state that it cannot go on from.
     fn step(&mut self) -> Result<(), String>;
 
     /// Where all vertices are.
@@ -31,7 +31,7 @@ pub trait Frames {
 /// Plays so many frames. Only steps are timed. The places of so many last frames are told.
 ///
 /// # Errors
-/// What the solver can't go on from, and when.
+/// A state that the solver cannot go on from, and its frame.
 pub fn play(frames: &mut dyn Frames, count: u32, last: u32) -> Result<Play, String> {
     let mut ms = Vec::new();
     let (mut compared, mut lasts) = (Vec::new(), Vec::new());
@@ -204,7 +204,7 @@ impl Way {
     /// A solver of this program that begins a scene of any mesh.
     ///
     /// # Errors
-    /// What it refuses.
+    /// The input that it refuses.
     pub fn begin(&self, garment: &Garment, told: &Told) -> Result<Box<dyn Frames>, String> {
         Ok(match self {
             Self::Ours(substepping, narrow_phase) => {

@@ -14,7 +14,7 @@ use crate::{
     told::Told,
 };
 
-/// What the script reads: a square sheet, and maybe a ball.
+/// The input of the script: a square sheet, and maybe a ball.
 #[derive(Serialize)]
 struct Sheet<'a> {
     scene: &'a str,

@@ -50,7 +50,7 @@ pub struct RapierCloth {
 
 impl RapierCloth {
     /// # Errors
-    /// What it refuses.
+    /// The input that it refuses.
     pub fn new(told: &Told, setting: Setting) -> Result<Self, String> {
         let world = WorldId::new();
         let seconds = told.frame / setting.substeps as f32;

@@ -63,7 +63,7 @@ pub struct Told {
     pub colliders: Vec<Collider>,
 }
 
-/// What resists bending between two triangles.
+/// A hinge that resists bending between two triangles.
 #[derive(Debug, Clone, Copy)]
 pub struct Hinge {
     /// The edge that they share, and the corners opposite to it.

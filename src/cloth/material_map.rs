@@ -55,8 +55,9 @@ pub struct ClothMaterialMap {
     /// Scales the friction μ against colliders. Zero or more, and finite. A triangle that lies on a sharp edge has the factor of its first
     /// particle. Cloth on cloth has the friction of [`ClothSelfCollision`](crate::contact::ClothSelfCollision) alone.
     pub friction: ClothFactor,
-    /// Scales the thickness of [`ClothSelfCollision`](crate::contact::ClothSelfCollision), which is that of the thickest part: from 0.1 to
-    /// 1. A face and an edge have the mean of their corners. A change of it searches for all layers anew.
+    /// Scales the thickness of [`ClothSelfCollision`](crate::contact::ClothSelfCollision), from 0.1 to 1: the settings have that of the
+    /// thickest part. A face and an edge have the mean of their corners. A change of it searches for all layers anew. Where layers touch
+    /// fast, the thinnest particle decides the number of sub-steps.
     pub thickness: ClothFactor,
 }
 

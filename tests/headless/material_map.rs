@@ -749,7 +749,7 @@ fn layers_are_as_thick_as_their_map() {
     for sheet in sheets {
         change::<ClothMaterialMap>(&mut app, sheet, |map| map.thickness = default());
     }
-    // They come apart by no more than 0.25 m/s.
+    // A pair adds velocity only up to 0.25 m/s. Pairs that share particles may add as much again.
     for _ in 0..10 {
         tick(&mut app, 1);
         for sheet in sheets {
@@ -775,7 +775,7 @@ fn layers_are_as_thick_as_their_map() {
                 };
                 app.world_mut().entity_mut(entity).insert(map);
             },
-            |error| error.quantity().is_some(),
+            |error| error.to_string().contains("factor of the thickness"),
             |app, entity| {
                 change::<ClothMaterialMap>(app, entity, |map| *map = default());
             },

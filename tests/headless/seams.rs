@@ -722,7 +722,7 @@ fn sewn_cloths_sleep_and_wake_together() {
     }
     println!("asleep after {ticks} ticks");
     assert_eq!(are_asleep(&app), [true; 2]);
-    // What changes of their seam wakes them.
+    // A change of their seam wakes them.
     change::<ClothSeam>(&mut app, seam, |seam| seam.compliance = 1.0e-4);
     tick(&mut app, 2);
     assert_eq!(are_asleep(&app), [false; 2]);
@@ -1065,7 +1065,7 @@ fn bad_seams_have_faults() {
     }
 }
 
-/// What is no seam any more has no fault.
+/// A seam that is removed leaves no fault.
 #[test]
 fn a_seam_that_is_removed_is_at_fault_no_more() {
     let mut app = app();

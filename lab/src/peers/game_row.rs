@@ -16,7 +16,7 @@ pub const GAME_SOLVERS: [&str; 3] = ["bevy_drape", "Jolt", "rapier-cloth"];
 pub struct GameRow {
     pub scene: String,
     pub solver: String,
-    /// What was chosen of it: numbers of its steps and iterations, and, behind a comma, another way to use it.
+    /// Its setting: numbers of its steps and iterations, and, behind a comma, another way to use it.
     pub setting: String,
     /// CPU time of a frame: the mean, the 99th percentile and the longest; of all starts the smallest.
     pub ms_per_frame: f64,

@@ -11,7 +11,7 @@ use crate::{
 
 pub struct PeersGames;
 
-/// What titles speak of.
+/// The subject of titles.
 const SETTING: &str = "default";
 
 /// The largest stretch that solvers are compared at, scene by scene, as a part of the length.
@@ -163,7 +163,7 @@ fn chart(rows: &[GameRow]) -> Chart {
         let drawn = |row: &&GameRow| !is_blown_up_by(row.max_stretch);
         for (style, solver) in GAME_SOLVERS.into_iter().enumerate() {
             let rows: Vec<&GameRow> = of(rows, scene, solver).filter(drawn).collect();
-            // What is said behind a comma is another way to use it, and on no line with the rest. So is what has no number.
+            // A setting with a comma is another way to use it, and on no line with the rest. So is one without a number.
             let (plain, other): (Vec<&GameRow>, Vec<&GameRow>) = rows
                 .iter()
                 .partition(|row| !row.setting.contains(',') && row.setting != SETTING);

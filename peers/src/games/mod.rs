@@ -17,7 +17,7 @@ use crate::{
     turns,
 };
 
-/// What came of a scene.
+/// The result of a scene.
 struct Outcome {
     ms: Milliseconds,
     stretch: [f64; 2],
@@ -93,7 +93,7 @@ pub fn run(
     Ok((rows, header))
 }
 
-/// What many sub-steps make of a scene that is compared, and what half as many differ by.
+/// The result of many sub-steps in a scene that is compared, and how much that of half as many differs.
 fn truth(game: &Game, checks: &mut Vec<String>) -> Result<Option<Outcome>, String> {
     if !game.is_compared() {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! What games have: a mesh that hangs, a skirt on legs that walk, a tablecloth, and a balloon.
+//! Scenes of games: a mesh that hangs, a skirt on legs that walk, a tablecloth, and a balloon.
 
 use bevy::math::{Isometry3d, Quat, Vec3};
 use bevy_drape::cloth::{Cloth, ClothMaterial, Pin, Pins};
@@ -20,10 +20,10 @@ const SIDE: u32 = 64;
 /// The plugin's default radius of a particle (m), which all solvers keep from bodies.
 const MARGIN: f32 = 0.01;
 
-/// What a balloon's gas has in pressure times volume (J): some 100 Pa.
+/// Pressure times volume of a balloon's gas (J): some 100 Pa.
 const GAS: f32 = 11.3;
 
-/// What the header of the CSV file says of the scenes.
+/// The scenes in the header of the CSV file.
 pub const SETTINGS: [(&str, &str); 7] = [
     (
         "scenes",

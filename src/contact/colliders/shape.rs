@@ -140,6 +140,7 @@ impl ColliderShape {
     }
 
     /// Its size (m), as the extent of its core, the radius around that, and its thickness.
+    #[inline]
     fn size(&self) -> (f32, Option<f32>, f32) {
         let corner = |[lower, upper]: [Vec3; 2]| lower.abs().max(upper.abs()).length();
         match *self {

@@ -9,8 +9,8 @@ use crate::cloth::ThicknessFactors;
 #[derive(Debug, Default, Clone)]
 #[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Circumstances {
-    of: Vec<(ClothSelfCollision, bool, Option<Isometry3d>)>,
-    /// The factors of the thickness of all cloths that have them, one after the other.
+    of: Vec<(ClothSelfCollision, usize, bool, Option<Isometry3d>)>,
+    /// The factors of the thickness of all cloths that have them, one after the other. `of` has the number of each cloth's.
     thickness: Vec<f32>,
     meets: Vec<bool>,
 }
@@ -20,7 +20,10 @@ impl Circumstances {
     pub fn renew(&mut self, cloths: &[Participant], meets: impl Fn(usize, usize) -> bool) -> bool {
         let of = || {
             let each = cloths.iter();
-            each.map(|cloth| (cloth.settings, cloth.is_fixed, cloth.to_common))
+            each.map(|cloth| {
+                let factors = cloth.thickness.map_or(0, |of| of.each().len());
+                (cloth.settings, factors, cloth.is_fixed, cloth.to_common)
+            })
         };
         let thickness = || cloths.iter().filter_map(|cloth| cloth.thickness);
         let thickness = || thickness().flat_map(ThicknessFactors::each).copied();

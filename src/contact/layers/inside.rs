@@ -30,9 +30,9 @@ impl MutualContact {
         cloths: &[Participant],
         is_new: impl Fn(usize) -> bool,
     ) -> Option<Inside> {
-        let near = |cloths_of: [usize; 2]| {
+        let mean_thickness = |cloths_of: [usize; 2]| {
             let [a, b] = cloths_of.map_inline(|cloth| cloths[cloth].settings.thickness);
-            INSIDE * (a + b) / 2.0
+            (a + b) / 2.0
         };
         let mut inside = Vec::new();
         for candidate in self.near.all() {
@@ -44,7 +44,7 @@ impl MutualContact {
             if is_vertex_with_face
                 && own != other
                 && of.iter().any(|&of| is_new(of))
-                && candidate.apart + candidate.thickness < near(of)
+                && candidate.apart < (INSIDE - 1.0) * candidate.thickness
             {
                 inside.push((of, vertex));
             }
@@ -65,7 +65,7 @@ impl MutualContact {
         Some(Inside {
             cloths: most_of,
             share,
-            distance: near(most_of),
+            distance: INSIDE * mean_thickness(most_of),
             others: all.len() - 2,
         })
     }

@@ -1,6 +1,7 @@
 //! Contact of cloth with cloth: with itself, and with others.
 //!
-//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart.
+//! Pairs of features, vertex with face and edge with edge, are kept a thickness apart: the mean of both. Boxes and slack take the
+//! largest of a cloth.
 //!
 //! ```text
 //!   cloth → patches of a few faces (sheet)

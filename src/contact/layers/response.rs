@@ -116,7 +116,7 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
     let stopped = depth.min(nearing).max(0.0);
     let older = depth - LEFT * pair.thickness - came;
     let released = (RELEASED * older).clamp(0.0, RELEASE * dt);
-    // They come apart no faster than that.
+    // Their velocity apart becomes no more than that.
     let quickened = (released + nearing.min(0.0)).max(0.0);
     let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
     let pushed = (came + released + least) / mobility;

@@ -36,6 +36,7 @@ const MAX_OF_SPACING: f32 = 0.5;
 pub struct ClothSelfCollision {
     /// Distance between the middles of two layers (m): positive, and at most half of the shortest spacing at rest; 5 mm
     /// by default. Thick cloth is safer at high speeds. Resting layers may be up to a twenty-fifth closer.
+    /// [`ClothMaterialMap::thickness`](crate::cloth::ClothMaterialMap::thickness) makes parts of it thinner.
     pub thickness: f32,
     /// Coulomb's μ between layers, zero or more.
     pub friction: f32,

@@ -1,4 +1,4 @@
-//! What a volume contains.
+//! Tests whether a volume contains points and other volumes.
 
 use bevy::math::{
     DVec3, Vec3,

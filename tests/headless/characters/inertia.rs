@@ -195,7 +195,7 @@ fn the_nearest_root_counts() {
     }
 }
 
-/// What a root has moved while it was at fault is no motion of its own.
+/// The motion of a root during a fault does not count as its own.
 #[test]
 fn a_mended_root_begins_where_it_is() {
     let good = ClothInertia::share(0.0);

@@ -167,14 +167,14 @@ fn what_is_wrong_with_a_snapshot_is_said() {
     let (_, one) = saved.cloths().next().expect("a cloth");
     let error = one.restore(app.world_mut(), nobody).expect_err("no cloth");
     assert_eq!(error, SnapshotError::NoCloth { entity: nobody });
-    let newer = text.replacen("version:11", "version:12", 1);
+    let newer = text.replacen("version:12", "version:13", 1);
     let newer: ClothWorldSnapshot = ron::from_str(&newer).expect("it can be read");
     let error = newer.restore(app.world_mut()).expect_err("a newer one");
     assert_eq!(
         error,
         SnapshotError::Version {
-            found: 12,
-            expected: 11
+            found: 13,
+            expected: 12
         }
     );
     // A particle that there is not: of what is attached, and of what touches.

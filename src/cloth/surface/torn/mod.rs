@@ -43,10 +43,7 @@ use super::{
     springs::{face_area, sides},
     triangles::VertexAttribute,
 };
-use crate::cloth::{
-    arrays::{chosen, sorted},
-    grid::ClothGrid,
-};
+use crate::cloth::{arrays::chosen, grid::ClothGrid};
 
 /// The reason why a cloth can't be torn.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
@@ -134,7 +131,9 @@ impl Surface {
     /// The particles of each face, by the sorted particles that they were before anything was torn.
     #[cfg(feature = "mesh")]
     pub(crate) fn faces_by_origin(&self) -> HashMap<[u32; 3], [u32; 3]> {
-        let origin = |face: [u32; 3]| sorted(face.map(|corner| self.origin_of(corner)));
+        let origin = |face: [u32; 3]| {
+            crate::cloth::arrays::sorted(face.map(|corner| self.origin_of(corner)))
+        };
         let faces = self.triangles().iter();
         faces.map(|face| (origin(*face), *face)).collect()
     }

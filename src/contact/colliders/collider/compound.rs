@@ -48,6 +48,7 @@ pub(super) fn scaled(
         let pose = Pose::from_parts(pose.translation.into(), pose.rotation);
         match shape? {
             ColliderShape::Geometry(geometry) => parts.add_parts(pose, geometry.parts()),
+            ColliderShape::Deforming(_) => return no_such("a mesh that deforms in a compound"),
             endless if endless.is_endless() => return no_such("a plane in a compound"),
             simple => {
                 let mut added = Ok(());

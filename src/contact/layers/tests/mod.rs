@@ -16,12 +16,15 @@ use std::sync::Arc;
 
 use bevy::math::{Quat, Vec3};
 
+use self::thrown::Draw;
 use super::{
     MutualContact, intersections, participant::Participant, settings::ClothSelfCollision,
     sheet::Sheet, work::Counts,
 };
 use crate::{
-    cloth::{Cloth, ClothMaterial, ClothParticles, Springs, Surface, TriangleMesh},
+    cloth::{
+        Cloth, ClothMaterial, ClothParticles, Springs, Surface, ThicknessFactors, TriangleMesh,
+    },
     hierarchy::QuadTree,
     solver::{Solver, TickStep},
 };
@@ -32,9 +35,18 @@ pub(super) struct Sheeted {
     surface: Arc<Surface>,
     sheet: Arc<Sheet>,
     solver: Solver,
+    /// Where it is thinner.
+    factors: Option<ThicknessFactors>,
 }
 
 impl Sheeted {
+    /// Makes it thinner by factors that are drawn, from 0.1 to 1.
+    fn of_drawn_thickness(mut self, draw: &mut Draw) -> Self {
+        let each = (0..self.particles.len()).map(|_| 0.55 + 0.45 * draw.next());
+        self.factors = ThicknessFactors::of(each.collect());
+        self
+    }
+
     /// A square of so many particles a side and this width (m), each put where `place` says from where it would lie around the
     /// origin.
     pub fn new(side: u32, width: f32, place: impl Fn(Vec3) -> Vec3) -> Self {
@@ -70,6 +82,7 @@ impl Sheeted {
             particles,
             surface,
             solver,
+            factors: None,
         }
     }
 }
@@ -205,7 +218,7 @@ fn participants(cloths: &mut [Sheeted], settings: ClothSelfCollision) -> Vec<Par
         sheet: &cloth.sheet,
         to_common: None,
         settings,
-        thickness: None,
+        thickness: cloth.factors.as_ref(),
         is_fixed: false,
     })
     .collect()

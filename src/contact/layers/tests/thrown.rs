@@ -23,7 +23,7 @@ impl Draw {
 }
 
 /// Of 1,000 random pairs with `BEVY_DRAPE_LONG`, and of every twentieth of these without, none intersects in any tick: grids
-/// and irregular meshes of other resolutions, in any attitude, 2 to 16 mm thick, from 1 to 20 m/s.
+/// and irregular meshes of other resolutions, in any attitude, 2 to 16 mm thick, half of them less from place to place, from 1 to 20 m/s.
 #[test]
 fn sheets_thrown_at_each_other_do_not_intersect() {
     let every = if is_long() { 1 } else { 20 };
@@ -43,7 +43,12 @@ fn sheets_thrown_at_each_other_do_not_intersect() {
                 // As far as a corner reaches.
                 turned + Vec3::new(off.x, side * (0.46 * angles.length().min(1.0) + gap), off.z)
             };
-            Sheeted::of_kind(14 + seed % 5, 0.6, draw.next() > 0.0, place)
+            let sheet = Sheeted::of_kind(14 + seed % 5, 0.6, draw.next() > 0.0, place);
+            if seed % 40 < 20 {
+                sheet
+            } else {
+                sheet.of_drawn_thickness(&mut draw)
+            }
         });
         let mut scene = Scene::new(sheets.into(), thickness);
         scene.step.acceleration = Vec3::ZERO;

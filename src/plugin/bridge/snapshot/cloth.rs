@@ -69,7 +69,7 @@ impl Default for ClothSnapshot {
 
 impl ClothSnapshot {
     /// Version of the snapshots that this crate writes. It reads no other version.
-    pub const VERSION: u32 = 11;
+    pub const VERSION: u32 = 12;
 
     /// A snapshot of the current state of a cloth.
     ///
