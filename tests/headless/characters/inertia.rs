@@ -202,7 +202,7 @@ fn a_mended_root_begins_where_it_is() {
     let (mut app, root, cloth) = beside_root(good);
     let start = in_world(&app, cloth);
     change::<ClothInertia>(&mut app, root, |inertia| {
-        *inertia = ClothInertia::share(2.0)
+        *inertia = ClothInertia::share(2.0);
     });
     tick(&mut app, 1);
     assert!(fault(&app, cloth).is_some());
