@@ -220,6 +220,15 @@ fn cloths_that_begin_beside_each_other_are_not_logged() {
     // A thickness apart.
     sheet(&mut app, "fleece", Transform::default());
     sheet(&mut app, "fleece", Transform::from_xyz(0.02, 0.01, 0.01));
+    // Thinner ones, a little more than their thickness apart.
+    for height in [0.0, 0.0035] {
+        let thin = sheet(&mut app, "fleece", Transform::from_xyz(20.0, height, 0.0));
+        let thickness = ClothFactor::of(0.3);
+        app.world_mut().entity_mut(thin).insert(ClothMaterialMap {
+            thickness,
+            ..default()
+        });
+    }
     // They share a seam.
     for place in [0.0, 0.45] {
         sheet(&mut app, "fleece", Transform::from_xyz(4.0, 0.0, place));
