@@ -116,14 +116,14 @@ fn push_pair(pair: &NearPair, floor: f32, members: &mut Members, dt: f32) -> Opt
     let stopped = depth.min(nearing).max(0.0);
     let older = depth - LEFT * pair.thickness - came;
     let released = (RELEASED * older).clamp(0.0, RELEASE * dt);
-    // Their velocity apart becomes no more than that.
-    let quickened = (released + nearing.min(0.0)).max(0.0);
+    // It adds velocity only up to its own, else each sub-step would add to the last and throw layers apart.
+    let added = (released + nearing.min(0.0)).max(0.0);
     let least = (KEPT * pair.thickness - gap - came - released).max(0.0);
     let pushed = (came + released + least) / mobility;
-    let slowed = (stopped + quickened) / mobility;
+    let slowed = (stopped + added) / mobility;
     // Friction changes the velocity and the way in this sub-step alike: otherwise layers creep.
     let slid = motion - normal * normal.dot(motion);
-    let (square, most) = (slid.length_squared(), pair.friction * (stopped + quickened));
+    let (square, most) = (slid.length_squared(), pair.friction * (stopped + added));
     let grip = if square > most * most {
         most / square.sqrt()
     } else {
