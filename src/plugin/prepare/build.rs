@@ -63,7 +63,7 @@ impl Building<'_, '_> {
         let (built, state) = (&mut *self.built, &mut *self.state);
         if is_kept {
             if let Some(from) = &mut built.from {
-                from.changes.tears = wanted.changes.tears;
+                from.changes = wanted.changes;
             }
             return Ok(build);
         }

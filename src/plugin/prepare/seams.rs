@@ -81,12 +81,8 @@ pub(crate) fn prepare_seams(
     std::mem::swap(&mut all.active, &mut all.before);
     all.active.clear();
     for mut seam in &mut seams {
-        let outcome = seam.prepare(&mut cloths, &names);
-        let (outcome, active) = match outcome {
-            Ok(active) => (Ok(()), active),
-            Err(error) => (Err(error), None),
-        };
-        all.active.extend(active);
+        let active = seam.prepare(&mut cloths, &names);
+        let outcome = active.map(|active| all.active.extend(active));
         ClothFault::report(&mut commands, seam.entity, seam.fault, Part::Seam, outcome);
     }
     // Whichever was spawned first.

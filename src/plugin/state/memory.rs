@@ -105,20 +105,11 @@ pub(crate) struct InputMemory {
     pub as_mesh: bool,
 }
 
-impl InputMemory {
-    fn copy_from(&mut self, other: &Self) {
-        (self.written, self.known) = (other.written, other.known);
-        (self.opened, self.as_mesh) = (other.opened, other.as_mesh);
-        self.forces.clone_from(&other.forces);
-    }
-}
-
 impl ClothState {
     /// Copies `other` into its own memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         let mut own = std::mem::take(self);
         own.rest.copy_from(&other.rest);
-        own.inputs.copy_from(&other.inputs);
         own.attachments.copy_from(&other.attachments);
         own.pose.copy_from(&other.pose);
         own.resting.copy_from(&other.resting);
@@ -126,7 +117,7 @@ impl ClothState {
         own.creases.clone_from(&other.creases);
         *self = Self {
             rest: own.rest,
-            inputs: own.inputs,
+            inputs: other.inputs.clone(),
             attachments: own.attachments,
             pose: own.pose,
             resting: own.resting,

@@ -7,19 +7,9 @@ use bevy::{
         system::{Query, Res, ResMut},
     },
     log::warn,
-    platform::collections::HashSet,
 };
 
 use crate::plugin::naming::{Named, Part};
-
-/// What can hardly be meant, and is no fault.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Notice {
-    /// A predicate holds for no particle.
-    PinsNothing,
-    /// A tick can't be simulated in the time that it stands for.
-    TooSlow,
-}
 
 /// Notices that have yet to be logged, each with its cloth and its text.
 #[derive(Resource, Debug, Default)]
@@ -37,12 +27,12 @@ impl Notices {
     }
 }
 
-/// Which notices a cloth has been given.
+/// Which notices a cloth has been given: that a predicate holds for no particle, and that a tick takes longer than it lasts.
 #[derive(Debug, Default)]
 pub(crate) struct Noticed {
     /// Whether it was built, and not looked at since.
     pub is_due: bool,
-    pub given: HashSet<Notice>,
+    pub given: [bool; 2],
 }
 
 /// Logs the notices of a frame; equal texts in one line.

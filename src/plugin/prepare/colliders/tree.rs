@@ -103,15 +103,9 @@ impl Bounds {
 
     /// A box as such, if it can be stored.
     fn checked(self) -> Self {
+        let is_near = |corner: &Vec3| corner.abs().max_element() < TREE_REACH && corner.is_finite();
         match self {
-            Self::Box(corners)
-                if corners
-                    .iter()
-                    .all(|c| c.is_finite() && c.abs().max_element() < TREE_REACH) =>
-            {
-                self
-            }
-            Self::Box(_) => Self::Unbounded,
+            Self::Box(corners) if !corners.iter().all(is_near) => Self::Unbounded,
             _ => self,
         }
     }
