@@ -36,9 +36,7 @@ use crate::{
     contact::ClothCollider,
     plugin::{
         authoring::{ClothBody, ClothPush},
-        naming::Part,
         sets::{ClothSystems, runs_in_schedule},
-        state::ClothFault,
     },
 };
 
@@ -84,13 +82,13 @@ impl Plugin for ClothRapierPlugin {
 /// Removes the adopted collider of an entity that lost its marker or its rapier collider.
 fn release<C: Component>(
     removed: On<Remove, C>,
-    adopted: Query<Option<&ClothFault>, With<RapierClothCollider>>,
+    adopted: Query<(), With<RapierClothCollider>>,
     mut commands: Commands,
 ) {
-    if let Ok(known) = adopted.get(removed.entity) {
-        let mut collider = commands.entity(removed.entity);
-        collider.try_remove::<ClothCollider>();
-        ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
+    if adopted.contains(removed.entity) {
+        commands
+            .entity(removed.entity)
+            .try_remove::<ClothCollider>();
     }
 }
 

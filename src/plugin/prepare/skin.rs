@@ -12,7 +12,7 @@ use crate::{
     cloth::{ClothError, ClothParticles},
     plugin::{
         frame::ClothFrame,
-        state::{ClothScratch, Pose, SkinLimits},
+        state::{Pose, SkinLimits},
     },
     solver::PinMotion,
 };
@@ -190,12 +190,8 @@ fn teleport_to_pose([from, to]: [&Pose; 2], turn: Quat, particles: &mut Mut<Clot
 /// Moves held particles with the pose in this tick. Keeps the others in their ball and outside their
 /// backstop. If the cloth is new or `jumps`, held particles are put where the pose ends.
 fn follow_pose(cloth: &mut PrepareQueryItem, jumps: bool) {
-    let ClothScratch {
-        pose: from,
-        constraints,
-        pins: motions,
-        ..
-    } = &mut *cloth.scratch;
+    let scratch = &mut *cloth.scratch;
+    let (from, motions, constraints) = (&scratch.pose, &mut scratch.pins, &mut scratch.constraints);
     let (to, particles) = (&cloth.state.pose, &mut cloth.particles);
     constraints.clear();
     let Some(limits) = &cloth.built.skin else {

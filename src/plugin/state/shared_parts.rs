@@ -10,7 +10,9 @@ use super::{
     shared::{Shared, Stiffnesses},
 };
 use crate::{
-    cloth::{ClothError, ClothMaterial, MeshError, StiffnessFactors, Surface, TriangleMesh},
+    cloth::{
+        ClothError, ClothMaterial, MaterialFactors, MeshError, PaintError, Surface, TriangleMesh,
+    },
     plugin::threads::Threads,
 };
 
@@ -22,7 +24,7 @@ pub(crate) struct SharedParts {
 }
 
 impl SharedParts {
-    /// The shared data of cloths with this recipe and material, and the factors that `factors` finds for its surface. The
+    /// The shared data of cloths with this recipe and material, and the factors that `factors` finds for its surface; and these. The
     /// surface is made by `make` if there is none yet. `before` is of the same cloth with other tears.
     ///
     /// # Errors
@@ -32,29 +34,29 @@ impl SharedParts {
         recipe: &Recipe,
         material: &ClothMaterial,
         before: Option<&Shared>,
-        factors: impl FnOnce(&Surface) -> Result<Arc<StiffnessFactors>, ClothError>,
+        factors: impl FnOnce(&Surface) -> Result<MaterialFactors, PaintError>,
         make: impl FnOnce() -> Result<Surface, ClothError>,
-    ) -> Result<Arc<Shared>, ClothError> {
+    ) -> Result<(Arc<Shared>, MaterialFactors), ClothError> {
         let alike = self.alike(recipe);
         let surface = match alike.first() {
             Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
         };
         let factors = factors(&surface)?;
-        let stiffnesses = Stiffnesses::of(material, &factors);
+        let stiffnesses = Stiffnesses::of(material, &factors.stiffness);
         if let Some(known) = alike.iter().find(|known| known.stiffnesses == stiffnesses) {
-            return Ok(known.clone());
+            return Ok((known.clone(), factors));
         }
         let shared = Shared::new(
             Threads::Compute,
             recipe.clone(),
             material,
             surface,
-            factors,
+            factors.stiffness.clone(),
             &alike,
             before,
         );
-        Ok(self.keep(shared))
+        Ok((self.keep(shared), factors))
     }
 
     /// Makes it known.
@@ -121,7 +123,7 @@ impl SharedParts {
         &mut self,
         shared: &Arc<Shared>,
         material: &ClothMaterial,
-        factors: &Arc<StiffnessFactors>,
+        factors: &MaterialFactors,
     ) -> Arc<Shared> {
         let Some(recipe) = &shared.recipe else {
             return shared.clone();
@@ -130,6 +132,6 @@ impl SharedParts {
         let known = |_: &Surface| Ok(factors.clone());
         let surface = || Ok((*shared.surface).clone());
         let other = self.get(recipe, material, None, known, surface);
-        other.unwrap_or_else(|_| shared.clone())
+        other.map_or_else(|_| shared.clone(), |(other, _)| other)
     }
 }

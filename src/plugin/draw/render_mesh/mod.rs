@@ -321,14 +321,13 @@ fn remove_render_mesh(
     faults: Query<&ClothFault>,
     mut commands: Commands,
 ) {
-    if let Ok((state, drawn)) = states.get(removed.entity) {
-        let mut entity = commands.entity(removed.entity);
-        if drawn.is_some_and(|drawn| drawn.0 == state.handle) {
-            entity.try_insert(Mesh3d(state.source.clone()));
-        }
-        entity.try_remove::<RenderMeshState>();
+    let mut entity = commands.entity(removed.entity);
+    if let Ok((state, Some(drawn))) = states.get(removed.entity)
+        && drawn.0 == state.handle
+    {
+        entity.try_insert(Mesh3d(state.source.clone()));
     }
-    commands.entity(removed.entity).try_remove::<RefusedMesh>();
+    entity.try_remove::<(RenderMeshState, RefusedMesh)>();
     let known = faults.get(removed.entity).ok();
     let part = Part::RenderMesh;
     ClothFault::report(&mut commands, removed.entity, known, part, Ok(()));
