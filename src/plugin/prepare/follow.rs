@@ -48,11 +48,13 @@ impl Building<'_, '_> {
 
     /// Takes over another material, map of it, or other pins, and springs, if these change.
     pub(super) fn follow_changes(&mut self) -> Result<(), ClothError> {
-        if self.follow_masses()?
-            && let Some(from) = &self.built.from
-        {
-            let (shared, material) = (&self.built.shared, self.wanted.material);
-            let shared = (self.parts).with_material(shared, material, &from.factors);
+        let are_others = self.follow_masses()?;
+        let known = &self.built.shared;
+        if let (Some(from), Some(recipe), true) = (&self.built.from, &known.recipe, are_others) {
+            let of = |_: &Surface| Ok(from.factors.clone());
+            // It exists, so it is not made.
+            let surface = || Ok((*known.surface).clone());
+            let (shared, _) = (self.parts).get(recipe, self.wanted.material, None, of, surface)?;
             self.take_springs(shared);
         }
         Ok(())

@@ -9,7 +9,7 @@ use bevy::{
         observer::On,
         query::{QueryData, With},
         resource::Resource,
-        system::{Commands, Query, Res, ResMut},
+        system::{Commands, Query, ResMut},
     },
     math::Vec3,
 };
@@ -57,11 +57,6 @@ pub(crate) struct SeamQuery {
 }
 
 impl Seams {
-    /// Whether there were any in the tick before.
-    pub fn were_there(seams: Res<Self>) -> bool {
-        !seams.active.is_empty()
-    }
-
     /// Whether a cloth is sewn to anything.
     pub fn hold(&self, cloth: Entity) -> bool {
         let mut cloths = self.active.iter().flat_map(|seam| seam.cloths);

@@ -107,7 +107,6 @@ pub(super) fn prepare_step(
         has_layers: inputs.self_collision.is_some(),
     });
     scratch.substepping = settings.substepping;
-    scratch.is_in_island = false;
 }
 
 /// Hands the solver the creases of the last tick. A cloth that does not crease any more has none.

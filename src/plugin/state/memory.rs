@@ -133,12 +133,6 @@ impl ClothState {
         self.resting.pieces.wake();
     }
 
-    /// Takes over the creases as a tick ends.
-    pub(crate) fn remember_creases(&mut self, creases: &[f32]) {
-        self.creases.clear();
-        self.creases.extend_from_slice(creases);
-    }
-
     /// Whether this state, read from a file, matches these particles.
     pub(crate) fn is_valid_for(&self, particles: &ClothParticles) -> bool {
         let len = particles.len();

@@ -4,7 +4,7 @@ use bevy::{
     ecs::{
         entity::Entity,
         resource::Resource,
-        system::{Query, Res, ResMut},
+        system::{Query, ResMut},
     },
     log::warn,
 };
@@ -19,11 +19,6 @@ impl Notices {
     /// Has a notice of a cloth be logged as the frame ends.
     pub fn add(&mut self, cloth: Entity, text: String) {
         self.0.push((cloth, text));
-    }
-
-    /// Whether there is anything to log.
-    pub fn are_there(notices: Res<Self>) -> bool {
-        !notices.0.is_empty()
     }
 }
 

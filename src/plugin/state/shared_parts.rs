@@ -117,21 +117,4 @@ impl SharedParts {
         let alike = all.filter(|known| known.recipe.as_ref() == Some(recipe));
         alike.collect()
     }
-
-    /// The same for a cloth whose material, or the factors of it, have changed.
-    pub fn with_material(
-        &mut self,
-        shared: &Arc<Shared>,
-        material: &ClothMaterial,
-        factors: &MaterialFactors,
-    ) -> Arc<Shared> {
-        let Some(recipe) = &shared.recipe else {
-            return shared.clone();
-        };
-        // A surface of that recipe exists, so it can't be refused.
-        let known = |_: &Surface| Ok(factors.clone());
-        let surface = || Ok((*shared.surface).clone());
-        let other = self.get(recipe, material, None, known, surface);
-        other.map_or_else(|_| shared.clone(), |(other, _)| other)
-    }
 }

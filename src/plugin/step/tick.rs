@@ -70,7 +70,9 @@ impl IntegrateQueryItem<'_, '_> {
         self.stats.air_impulse = rotation * forces.impulse();
         (self.stats.enclosed_volume, self.stats.gauge_pressure) = forces.enclosed();
         self.state.inputs.forces.memory = forces.memory;
-        self.state.remember_creases(self.built.solver.creases());
+        let creases = &mut self.state.creases;
+        creases.clear();
+        creases.extend_from_slice(self.built.solver.creases());
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 
