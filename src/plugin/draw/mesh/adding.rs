@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Gives a mesh to each cloth that has none, or the mesh of another surface.
-pub(super) fn add_meshes(
+pub(in crate::plugin::draw) fn add_meshes(
     cloths: Query<(
         Entity,
         &Cloth,

@@ -25,7 +25,7 @@ use bevy::{
     transform::components::GlobalTransform,
 };
 
-use super::mesh::{MeshDrawing, MeshSystems};
+use super::mesh::{MeshDrawing, add_meshes, update_meshes};
 use crate::{
     cloth::{Cloth, ClothError, MeshError, Surface, TargetError},
     plugin::{
@@ -138,10 +138,10 @@ impl Plugin for ClothRenderMeshPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    bind.after(MeshSystems::Add).before(MeshSystems::Write),
+                    bind.after(add_meshes).before(update_meshes),
                     update
                         .after(bind)
-                        .after(MeshSystems::Write)
+                        .after(update_meshes)
                         .before(AssetEventSystems),
                 )
                     .run_if(resource_exists::<Assets<Mesh>>),
