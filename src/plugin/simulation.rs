@@ -2,26 +2,15 @@
 
 #[cfg(feature = "mesh")]
 use bevy::{
-    app::First, asset::AssetEvent, camera::visibility::VisibilitySystems, ecs::message::Messages,
-    mesh::Mesh,
+    camera::visibility::VisibilitySystems,
+    prelude::{AssetEvent, First, Mesh, Messages},
 };
 use bevy::{
-    app::{App, Last, Plugin},
-    ecs::{
-        bundle::Bundle,
-        component::Component,
-        entity::Entity,
-        entity_disabling::Disabled,
-        intern::Interned,
-        lifecycle::{Add, Insert, Remove},
-        observer::On,
-        query::{Allow, With},
-        schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
-        system::{Commands, Query},
+    ecs::{entity_disabling::Disabled, intern::Interned, schedule::ScheduleLabel},
+    prelude::{
+        Add, Allow, App, Bundle, Commands, Component, Entity, Insert, IntoScheduleConfigs, Last,
+        On, Plugin, Query, Remove, Time, TransformSystems, With, error, resource_exists,
     },
-    log::error,
-    time::Time,
-    transform::TransformSystems,
 };
 
 #[cfg(feature = "mesh")]

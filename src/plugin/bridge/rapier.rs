@@ -2,25 +2,11 @@
 //! them back.
 
 use bevy::{
-    app::{App, Plugin},
-    ecs::{
-        change_detection::{DetectChanges, DetectChangesMut},
-        component::Component,
-        entity::Entity,
-        intern::Interned,
-        lifecycle::Remove,
-        observer::On,
-        query::With,
-        reflect::ReflectComponent,
-        schedule::{IntoScheduleConfigs, ScheduleLabel},
-        system::{Commands, Query},
-        world::Ref,
-    },
-    math::{BVec3, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::{
-        components::{GlobalTransform, Transform},
-        helper::TransformHelper,
+    ecs::{intern::Interned, schedule::ScheduleLabel, world::Ref},
+    prelude::{
+        App, BVec3, Commands, Component, DetectChanges, DetectChangesMut, Entity, GlobalTransform,
+        IntoScheduleConfigs, On, Plugin, Query, Reflect, ReflectComponent, ReflectDefault, Remove,
+        Transform, TransformHelper, Vec3, With,
     },
 };
 use bevy_rapier3d::{

@@ -1,6 +1,6 @@
 //! Sleeping cloths, which need no preparation.
 
-use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
+use bevy::prelude::{DetectChanges, Vec3};
 
 use super::preparing::{PrepareQueryItem, Surroundings};
 use crate::{

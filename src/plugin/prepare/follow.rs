@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::ecs::change_detection::{DetectChangesMut, Mut};
+use bevy::prelude::{DetectChangesMut, Mut};
 
 use super::build_inputs::{Build, Building};
 use crate::{

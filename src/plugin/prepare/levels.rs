@@ -1,13 +1,8 @@
 //! Chooses the level of detail of each cloth, and which cloths are moved in a tick.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::{Has, QueryData, With},
-        system::{Local, Query, Res, ResMut},
-    },
-    math::Vec3,
-    time::Time,
+    ecs::query::QueryData,
+    prelude::{Entity, Has, Local, Query, Res, ResMut, Time, Vec3, With},
 };
 
 use super::{

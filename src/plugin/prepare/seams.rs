@@ -3,15 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        lifecycle::Remove,
-        observer::On,
-        query::{QueryData, With},
-        resource::Resource,
-        system::{Commands, Query, ResMut},
-    },
-    math::Vec3,
+    ecs::query::QueryData,
+    prelude::{Commands, Entity, On, Query, Remove, ResMut, Resource, Vec3, With},
 };
 
 use super::{

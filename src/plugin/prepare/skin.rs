@@ -2,10 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    ecs::change_detection::{DetectChanges, Mut},
-    math::{Isometry3d, Quat, Vec3},
-};
+use bevy::prelude::{DetectChanges, Isometry3d, Mut, Quat, Vec3};
 
 use super::{carry::set_motion, preparing::PrepareQueryItem, source::Sources};
 use crate::{

@@ -1,6 +1,6 @@
 //! The start of a cloth's tick, once the cloth is in place.
 
-use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
+use bevy::prelude::{DetectChanges, Vec3};
 
 use super::{
     asleep::ball,

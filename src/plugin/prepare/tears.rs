@@ -3,11 +3,7 @@
 use std::mem;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::Changed,
-        system::{Query, ResMut},
-    },
+    prelude::{Changed, Entity, Query, ResMut},
     tasks::{AsyncComputeTaskPool, TaskPool},
 };
 

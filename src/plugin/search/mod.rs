@@ -4,13 +4,10 @@
 //! visited nodes, and the candidates.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::QueryData,
-        system::{Query, ResMut},
-    },
-    math::{Vec3, bounding::BoundingSphere},
+    ecs::query::QueryData,
+    math::bounding::BoundingSphere,
     platform::time::Instant,
+    prelude::{Entity, Query, ResMut, Vec3},
 };
 
 use super::{

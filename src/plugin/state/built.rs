@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{change_detection::Tick, component::Component},
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::change_detection::Tick,
+    prelude::{Component, Reflect, ReflectDefault, Vec3},
 };
 
 use super::{notices::Noticed, pose::SkinLimits, recipe::Source, shared::Shared};

@@ -1,14 +1,8 @@
 //! Contacts of cloths with colliders, and the messages about them.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        message::Message,
-        reflect::{ReflectComponent, ReflectMapEntities},
-    },
-    math::{Quat, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::{entity::MapEntities, reflect::ReflectMapEntities},
+    prelude::{Component, Entity, Message, Quat, Reflect, ReflectComponent, ReflectDefault, Vec3},
 };
 
 use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};

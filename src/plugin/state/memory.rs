@@ -1,12 +1,8 @@
 //! Everything that a cloth's next tick depends on, besides its public components.
 
 use bevy::{
-    ecs::{
-        change_detection::Tick,
-        component::Component,
-        entity::{Entity, EntityMapper, MapEntities},
-    },
-    math::Isometry3d,
+    ecs::{change_detection::Tick, entity::MapEntities},
+    prelude::{Component, Entity, EntityMapper, Isometry3d},
 };
 
 use super::{forces::ForceState, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose};

@@ -1,13 +1,6 @@
 //! Warnings about cloths that are simulated all the same: each is logged once, by name.
 
-use bevy::{
-    ecs::{
-        entity::Entity,
-        resource::Resource,
-        system::{Query, ResMut},
-    },
-    log::warn,
-};
+use bevy::prelude::{Entity, Query, ResMut, Resource, warn};
 
 use crate::plugin::naming::{Named, Part};
 

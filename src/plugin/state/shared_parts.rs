@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Weak};
 
-use bevy::ecs::{entity::Entity, resource::Resource};
+use bevy::prelude::{Entity, Resource};
 
 use super::{
     async_build::{AsyncBuilds, BuildRequest},

@@ -1,6 +1,6 @@
 //! The system that moves all cloths.
 
-use bevy::ecs::system::{Query, ResMut};
+use bevy::prelude::{Query, ResMut};
 
 use super::{
     member::{Member, members},

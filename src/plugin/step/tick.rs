@@ -1,8 +1,8 @@
 //! A cloth in its tick: what each sub-step does to it, and what the tick leaves.
 
 use bevy::{
-    ecs::{change_detection::DetectChanges, entity::Entity, query::QueryData, system::Query},
-    math::Vec3,
+    ecs::query::QueryData,
+    prelude::{DetectChanges, Entity, Query, Vec3},
 };
 
 use crate::{

@@ -1,14 +1,9 @@
 //! The snapshot of all cloths and colliders of a world.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashSet, EntityMapper, MapEntities},
-        hierarchy::ChildOf,
-        query::With,
-        world::World,
-    },
-    math::{DVec3, Isometry3d, Quat, Vec3},
-    transform::components::Transform,
+    ecs::entity::{EntityHashSet, MapEntities},
+    math::DVec3,
+    prelude::{ChildOf, Entity, EntityMapper, Isometry3d, Quat, Transform, Vec3, With, World},
 };
 
 use super::{cloth::ClothSnapshot, error::SnapshotError};

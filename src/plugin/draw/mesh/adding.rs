@@ -1,14 +1,8 @@
 //! Gives cloths their meshes, and takes them away.
 
 use bevy::{
-    asset::Assets,
-    ecs::{
-        entity::Entity,
-        lifecycle::Remove,
-        observer::On,
-        system::{Commands, Query, ResMut},
-    },
-    mesh::{Mesh, Mesh3d, skinning::SkinnedMesh},
+    mesh::skinning::SkinnedMesh,
+    prelude::{Assets, Commands, Entity, Mesh, Mesh3d, On, Query, Remove, ResMut},
 };
 
 use super::{

@@ -9,25 +9,16 @@ mod tube;
 mod write;
 
 use bevy::{
-    app::{
-        App, FixedFirst, FixedLast, FixedPostUpdate, FixedPreUpdate, FixedUpdate, Plugin,
-        PostUpdate,
+    asset::AssetEventSystems,
+    camera::visibility::VisibilitySystems,
+    ecs::{intern::Interned, query::QueryData, schedule::ScheduleLabel, system::SystemParam},
+    math::Affine3A,
+    prelude::{
+        App, Assets, DetectChanges, Entity, Fixed, FixedFirst, FixedLast, FixedPostUpdate,
+        FixedPreUpdate, FixedUpdate, GlobalTransform, InheritedVisibility, IntoScheduleConfigs,
+        Mesh, Plugin, PostUpdate, Query, Ref, Res, ResMut, Resource, Time, TransformSystems, Vec3,
+        resource_exists,
     },
-    asset::{AssetEventSystems, Assets},
-    camera::visibility::{InheritedVisibility, VisibilitySystems},
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        entity::Entity,
-        intern::Interned,
-        query::QueryData,
-        resource::Resource,
-        schedule::{IntoScheduleConfigs, ScheduleLabel, common_conditions::resource_exists},
-        system::{Query, Res, ResMut, SystemParam},
-    },
-    math::{Affine3A, Vec3},
-    mesh::Mesh,
-    time::{Fixed, Time},
-    transform::{TransformSystems, components::GlobalTransform},
 };
 
 use crate::{

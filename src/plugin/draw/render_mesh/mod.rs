@@ -5,24 +5,18 @@ mod drawn;
 use std::sync::Arc;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    asset::{AssetEvent, AssetEventSystems, AssetId, AssetServer, Assets, Handle},
-    camera::visibility::InheritedVisibility,
+    asset::AssetEventSystems,
     ecs::{
-        component::Component,
-        entity::{ComponentCloneCtx, Entity, MapEntities, SourceComponent},
-        lifecycle::Remove,
-        message::MessageReader,
-        observer::On,
-        query::{QueryData, With, Without},
-        reflect::{ReflectComponent, ReflectFromWorld, ReflectMapEntities},
-        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Commands, Local, Query, Res, ResMut},
-        world::{FromWorld, World},
+        entity::{ComponentCloneCtx, MapEntities, SourceComponent},
+        query::QueryData,
+        reflect::ReflectMapEntities,
     },
-    mesh::{Mesh, Mesh3d},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::GlobalTransform,
+    prelude::{
+        App, AssetEvent, AssetId, AssetServer, Assets, Commands, Component, Entity, FromWorld,
+        GlobalTransform, Handle, InheritedVisibility, IntoScheduleConfigs, Local, Mesh, Mesh3d,
+        MessageReader, On, Plugin, PostUpdate, Query, Reflect, ReflectComponent, ReflectDefault,
+        ReflectFromWorld, Remove, Res, ResMut, With, Without, World, resource_exists,
+    },
 };
 
 use super::mesh::{MeshDrawing, add_meshes, update_meshes};

@@ -1,9 +1,6 @@
 //! One tree over the bounds of all colliders, so that a cloth looks only at those around it.
 
-use bevy::{
-    ecs::{entity::Entity, resource::Resource},
-    math::{Mat3, Vec3},
-};
+use bevy::prelude::{Entity, Mat3, Resource, Vec3};
 use parry3d::{
     bounding_volume::Aabb,
     partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhNode, BvhWorkspace},

@@ -1,8 +1,8 @@
 //! How colliders move from tick to tick.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity},
-    math::{Affine3A, Isometry3d, Quat, Vec3, Vec3A},
+    math::Affine3A,
+    prelude::{Component, Entity, Isometry3d, Quat, Vec3, Vec3A},
 };
 
 use super::{
