@@ -1,19 +1,12 @@
 //! The frame that a cloth is simulated in.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::Entity,
-        entity_disabling::Disabled,
-        hierarchy::ChildOf,
-        name::Name,
-        query::Allow,
-        reflect::ReflectComponent,
-        system::{Query, SystemParam},
+    ecs::{entity_disabling::Disabled, system::SystemParam},
+    math::Affine3A,
+    prelude::{
+        Allow, ChildOf, Component, Entity, GlobalTransform, Isometry3d, Name, Query, Reflect,
+        ReflectComponent, ReflectDefault, Transform, Vec3, Vec3A,
     },
-    math::{Affine3A, Isometry3d, Vec3, Vec3A},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::{GlobalTransform, Transform},
 };
 
 use super::naming::quoted;

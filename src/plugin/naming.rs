@@ -1,8 +1,8 @@
 //! How log messages name an entity.
 
 use bevy::{
-    ecs::{entity::Entity, name::Name, query::QueryData},
-    reflect::Reflect,
+    ecs::query::QueryData,
+    prelude::{Entity, Name, Reflect},
 };
 
 /// The part of an entity that has the fault: an entity may be a cloth and a collider at once, or a mesh that a cloth

@@ -1,12 +1,11 @@
 //! Registration of components with lists, as scenes and inspectors apply them.
 
 use bevy::{
-    app::App,
-    ecs::{
-        component::{Component, Mutable},
-        reflect::{AppTypeRegistry, ReflectComponent, ReflectComponentFns},
+    ecs::{component::Mutable, reflect::ReflectComponentFns},
+    prelude::{
+        App, AppTypeRegistry, Component, FromReflect, PartialReflect, ReflectComponent, TypePath,
     },
-    reflect::{FromReflect, GetTypeRegistration, PartialReflect, ReflectMut, ReflectRef, TypePath},
+    reflect::{GetTypeRegistration, ReflectMut, ReflectRef},
 };
 
 /// Registers a component whose lists are cut to the length of the lists that are applied to them. Bevy keeps the

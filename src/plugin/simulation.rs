@@ -2,35 +2,21 @@
 
 #[cfg(feature = "mesh")]
 use bevy::{
-    app::First, asset::AssetEvent, camera::visibility::VisibilitySystems, ecs::message::Messages,
-    mesh::Mesh,
+    camera::visibility::VisibilitySystems,
+    prelude::{AssetEvent, First, Mesh, Messages},
 };
 use bevy::{
-    app::{App, Last, Plugin},
-    ecs::{
-        bundle::Bundle,
-        component::Component,
-        entity::Entity,
-        entity_disabling::Disabled,
-        intern::Interned,
-        lifecycle::{Add, Insert, Remove},
-        observer::On,
-        query::{Allow, With},
-        schedule::{
-            IntoScheduleConfigs, ScheduleLabel, SystemCondition,
-            common_conditions::{any_with_component, resource_exists},
-        },
-        system::{Commands, Query},
+    ecs::{entity_disabling::Disabled, intern::Interned, schedule::ScheduleLabel},
+    prelude::{
+        Add, Allow, App, Bundle, Commands, Component, Entity, Insert, IntoScheduleConfigs, Last,
+        On, Plugin, Query, Remove, Time, TransformSystems, With, error, resource_exists,
     },
-    log::error,
-    time::Time,
-    transform::TransformSystems,
 };
 
 #[cfg(feature = "mesh")]
 use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    authoring::{self, ClothGrab, ClothGravity, ClothOrder, ClothSeam, ClothWindZone, give_order},
+    authoring::{self, ClothGravity, ClothOrder, ClothWindZone, give_order},
     frame::ClothFrame,
     naming::Part,
     prepare::{
@@ -154,12 +140,7 @@ fn add_resources_and_observers(app: &mut App) {
         .add_observer(forget_stitches)
         .add_observer(forget_collider)
         .add_observer(note_enabled)
-        .add_systems(Last, note_removals)
-        .add_systems(
-            Last,
-            build_torn_ahead.run_if(any_with_component::<ClothTears>),
-        )
-        .add_systems(Last, log_notices.run_if(Notices::are_there));
+        .add_systems(Last, (note_removals, build_torn_ahead, log_notices));
     #[cfg(feature = "mesh")]
     app.init_resource::<SharedMeshes>();
 }
@@ -170,17 +151,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     #[cfg(feature = "mesh")]
     let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
     // A hand may be drawn where it was a frame ago, too.
-    let hands = hold_cloths
-        .run_if(any_with_component::<ClothGrab>)
-        .ambiguous_with(TransformSystems::Propagate);
-    // A cloth that has lost its last `ClothTears` is mended, which is reported, too.
-    let tears = (
-        report_tears,
-        tear_cloths.run_if(any_with_component::<ClothTearing>),
-    )
-        .chain();
-    // Once more after the last one is gone, to wake what it held.
-    let seams = prepare_seams.run_if(any_with_component::<ClothSeam>.or_else(Seams::were_there));
+    let hands = hold_cloths.ambiguous_with(TransformSystems::Propagate);
     app.configure_sets(
         schedule,
         (
@@ -204,7 +175,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 prepare_wind,
                 levels,
                 prepare_cloths,
-                seams,
+                prepare_seams,
                 find_islands,
             )
                 .chain()
@@ -224,7 +195,8 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 report_lost,
                 send_touch_messages,
                 report_limits,
-                tears,
+                report_tears,
+                tear_cloths,
                 log_faults,
             )
                 .chain()

@@ -1,6 +1,12 @@
 //! The number of threads that work on a tick.
 
-use bevy::tasks::{ComputeTaskPool, available_parallelism};
+use bevy::{
+    ecs::{
+        query::{IterQueryData, QueryFilter},
+        system::Query,
+    },
+    tasks::{ComputeTaskPool, available_parallelism},
+};
 
 /// A cloth of fewer particles is solved by one task: two gain nothing at 128², and a factor of 1.3 at 256², 1.4 at 512².
 pub(crate) const MIN_TO_SPLIT: usize = 256 * 256;
@@ -9,6 +15,19 @@ pub(crate) const MIN_TO_SPLIT: usize = 256 * 256;
 pub(crate) fn threads() -> usize {
     let pool = ComputeTaskPool::try_get().map_or(0, |pool| pool.thread_num());
     (pool + 1).min(available_parallelism())
+}
+
+/// Runs a function on each item of a query, of several at once if that is asked for and there are threads for it.
+pub(crate) fn for_each<'w, 's, D: IterQueryData, F: QueryFilter>(
+    query: &'w mut Query<'_, 's, D, F>,
+    at_once: bool,
+    run: impl Fn(D::Item<'w, 's>) + Send + Sync + Clone,
+) {
+    if at_once && threads() > 1 {
+        query.par_iter_mut().for_each(run);
+    } else {
+        query.iter_mut().for_each(run);
+    }
 }
 
 /// The threads that do a piece of work.

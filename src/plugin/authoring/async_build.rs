@@ -1,9 +1,6 @@
 //! Cloths that are built in the background.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Component, Reflect, ReflectComponent, ReflectDefault};
 
 /// Builds a cloth on Bevy's `AsyncComputeTaskPool` while the game goes on. A mesh of 4,096 vertices takes some 45 ms, which is
 /// longer than a frame. Until it is built, the cloth waits like one whose asset is loading: its

@@ -1,13 +1,8 @@
 //! Pins that follow other entities, and teleports.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        reflect::{ReflectComponent, ReflectMapEntities},
-    },
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::{entity::MapEntities, reflect::ReflectMapEntities},
+    prelude::{Component, Entity, Reflect, ReflectComponent, ReflectDefault, Vec3},
 };
 
 use crate::cloth::Pin;

@@ -1,9 +1,7 @@
 //! Colliders that cloth pushes back.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::{BVec3, Mat3, Quat, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
+use bevy::prelude::{
+    BVec3, Component, Mat3, Quat, Reflect, ReflectComponent, ReflectDefault, Vec3,
 };
 
 use crate::{

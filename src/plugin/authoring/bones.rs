@@ -1,9 +1,6 @@
 //! Colliders on the bones of a character.
 
-use bevy::{
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Component, Entity, Reflect, ReflectComponent, ReflectDefault};
 
 /// Colliders on the bones of a skeleton below this entity, one line for each. Add it to a character's entity; its scene
 /// need not have been spawned yet. Bones are found by their `Name`s as soon as they exist, and again when the scene is

@@ -3,14 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        reflect::{ReflectComponent, ReflectMapEntities},
-    },
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::Transform,
+    ecs::{entity::MapEntities, reflect::ReflectMapEntities},
+    prelude::{Component, Entity, Reflect, ReflectComponent, ReflectDefault, Transform, Vec3},
 };
 
 use crate::cloth::{Allowed, QuantityError, Surface};

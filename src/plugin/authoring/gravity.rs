@@ -1,10 +1,6 @@
 //! The gravity of all cloths.
 
-use bevy::{
-    ecs::{reflect::ReflectResource, resource::Resource},
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Reflect, ReflectDefault, ReflectResource, Resource, Vec3};
 
 /// Gravitational acceleration of every cloth (m/s²), in the world.
 /// [`ClothSettings::gravity`](crate::solver::ClothSettings::gravity) overrides it for a single cloth.

@@ -1,10 +1,6 @@
 //! How much of a character's motion its cloth feels.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Isometry3d,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Component, Isometry3d, Reflect, ReflectComponent, ReflectDefault};
 
 use crate::{
     cloth::{Allowed, ClothError, QuantityError},

@@ -1,12 +1,7 @@
 //! Level of detail: how often a cloth is simulated.
 
-use bevy::{
-    ecs::{
-        component::Component,
-        reflect::{ReflectComponent, ReflectResource},
-        resource::Resource,
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
+use bevy::prelude::{
+    Component, Reflect, ReflectComponent, ReflectDefault, ReflectResource, Resource,
 };
 
 use crate::cloth::{Allowed, QuantityError};

@@ -1,13 +1,10 @@
 //! The mesh that draws a cloth, and its skeleton.
 
 use bevy::{
-    asset::{AssetId, Handle},
-    ecs::{component::Component, entity::Entity, reflect::ReflectComponent},
-    mesh::{
-        Mesh,
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    prelude::{
+        AssetId, Component, Entity, Handle, Mesh, Reflect, ReflectComponent, ReflectDefault,
     },
-    reflect::{Reflect, std_traits::ReflectDefault},
 };
 
 /// On a cloth whose [`Mesh3d`](bevy::mesh::Mesh3d) follows its particles, with UVs, normals and tangents. It replaces

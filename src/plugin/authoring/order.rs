@@ -1,11 +1,6 @@
 //! The order in which cloths, colliders and wind zones act where several meet.
 
-use bevy::{
-    ecs::{
-        component::Component, entity::Entity, name::Name, reflect::ReflectComponent, system::Query,
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Component, Entity, Name, Query, Reflect, ReflectComponent, ReflectDefault};
 
 use crate::plugin::frame::Places;
 

@@ -3,12 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        reflect::{ReflectComponent, ReflectMapEntities},
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::{entity::MapEntities, reflect::ReflectMapEntities},
+    prelude::{Component, Entity, Reflect, ReflectComponent, ReflectDefault},
 };
 
 use super::ClothTarget;

@@ -1,13 +1,7 @@
 //! The air of the world, and that of one cloth.
 
-use bevy::{
-    ecs::{
-        component::Component,
-        reflect::{ReflectComponent, ReflectResource},
-        resource::Resource,
-    },
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
+use bevy::prelude::{
+    Component, Reflect, ReflectComponent, ReflectDefault, ReflectResource, Resource, Vec3,
 };
 
 use crate::cloth::{Allowed, QuantityError};

@@ -1,13 +1,9 @@
 //! Local winds.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        reflect::ReflectComponent,
-    },
-    math::{Affine3A, Quat, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::entity::MapEntities,
+    math::Affine3A,
+    prelude::{Component, Entity, Quat, Reflect, ReflectComponent, ReflectDefault, Vec3},
 };
 
 use super::wind::{LARGE, check_velocity};

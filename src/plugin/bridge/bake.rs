@@ -1,8 +1,8 @@
 //! A cloth's motion as a glTF file with morph targets.
 
 use bevy::{
-    math::Vec3,
-    mesh::{Mesh, PrimitiveTopology, VertexAttributeValues},
+    mesh::{PrimitiveTopology, VertexAttributeValues},
+    prelude::{Mesh, Vec3},
 };
 use serde_json::{Value, json};
 use thiserror::Error;

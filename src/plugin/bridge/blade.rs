@@ -1,12 +1,8 @@
 //! Blades that cut cloth.
 
 use bevy::{
-    ecs::{
-        change_detection::DetectChangesMut,
-        entity::Entity,
-        system::{Query, SystemParam},
-    },
-    math::Vec3,
+    ecs::system::SystemParam,
+    prelude::{DetectChangesMut, Entity, Query, Vec3},
 };
 
 use super::surface_now::surface_now;

@@ -1,13 +1,9 @@
 //! Figures for Bevy's `DiagnosticsStore`.
 
 use bevy::{
-    app::{App, Plugin},
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
-    ecs::{
-        intern::Interned,
-        schedule::{IntoScheduleConfigs, ScheduleLabel},
-        system::Query,
-    },
+    ecs::{intern::Interned, schedule::ScheduleLabel},
+    prelude::{App, IntoScheduleConfigs, Plugin, Query},
 };
 
 use crate::{

@@ -1,15 +1,9 @@
 //! Worlds with a floating origin.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        entity_disabling::Disabled,
-        query::{Allow, QueryData},
-        system::{In, Query, ResMut, RunSystemOnce},
-        world::World,
-    },
-    math::{Affine3A, Vec3},
-    transform::components::GlobalTransform,
+    ecs::{entity_disabling::Disabled, query::QueryData, system::RunSystemOnce},
+    math::Affine3A,
+    prelude::{Allow, Entity, GlobalTransform, In, Query, ResMut, Vec3, World},
 };
 
 #[cfg(feature = "mesh")]

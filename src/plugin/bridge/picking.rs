@@ -3,23 +3,8 @@
 #[cfg(feature = "mesh")]
 use bevy::ecs::query::Without;
 use bevy::{
-    app::{App, Plugin, PreUpdate},
-    camera::{
-        Camera,
-        visibility::{RenderLayers, ViewVisibility},
-    },
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        component::Component,
-        entity::Entity,
-        message::{MessageReader, MessageWriter},
-        observer::On,
-        query::{Has, With},
-        resource::Resource,
-        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Commands, Query, Res, SystemParam},
-    },
-    log::error,
+    camera::visibility::RenderLayers,
+    ecs::system::SystemParam,
     picking::{
         Pickable, PickingSystems,
         backend::{
@@ -28,6 +13,11 @@ use bevy::{
         },
         events::{Pointer, Press},
         pointer::{PointerAction, PointerButton, PointerInput},
+    },
+    prelude::{
+        App, Camera, Commands, Component, DetectChanges, Entity, Has, IntoScheduleConfigs,
+        MessageReader, MessageWriter, On, Plugin, PreUpdate, Query, Ref, Res, Resource,
+        ViewVisibility, With, error, resource_exists,
     },
 };
 

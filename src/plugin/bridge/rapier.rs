@@ -2,25 +2,11 @@
 //! them back.
 
 use bevy::{
-    app::{App, Plugin},
-    ecs::{
-        change_detection::{DetectChanges, DetectChangesMut},
-        component::Component,
-        entity::Entity,
-        intern::Interned,
-        lifecycle::Remove,
-        observer::On,
-        query::With,
-        reflect::ReflectComponent,
-        schedule::{IntoScheduleConfigs, ScheduleLabel},
-        system::{Commands, Query},
-        world::Ref,
-    },
-    math::{BVec3, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::{
-        components::{GlobalTransform, Transform},
-        helper::TransformHelper,
+    ecs::{intern::Interned, schedule::ScheduleLabel, world::Ref},
+    prelude::{
+        App, BVec3, Commands, Component, DetectChanges, DetectChangesMut, Entity, GlobalTransform,
+        IntoScheduleConfigs, On, Plugin, Query, Reflect, ReflectComponent, ReflectDefault, Remove,
+        Transform, TransformHelper, Vec3, With,
     },
 };
 use bevy_rapier3d::{
@@ -36,9 +22,7 @@ use crate::{
     contact::ClothCollider,
     plugin::{
         authoring::{ClothBody, ClothPush},
-        naming::Part,
         sets::{ClothSystems, runs_in_schedule},
-        state::ClothFault,
     },
 };
 
@@ -84,13 +68,13 @@ impl Plugin for ClothRapierPlugin {
 /// Removes the adopted collider of an entity that lost its marker or its rapier collider.
 fn release<C: Component>(
     removed: On<Remove, C>,
-    adopted: Query<Option<&ClothFault>, With<RapierClothCollider>>,
+    adopted: Query<(), With<RapierClothCollider>>,
     mut commands: Commands,
 ) {
-    if let Ok(known) = adopted.get(removed.entity) {
-        let mut collider = commands.entity(removed.entity);
-        collider.try_remove::<ClothCollider>();
-        ClothFault::report(&mut commands, removed.entity, known, Part::Collider, Ok(()));
+    if adopted.contains(removed.entity) {
+        commands
+            .entity(removed.entity)
+            .try_remove::<ClothCollider>();
     }
 }
 

@@ -3,12 +3,8 @@
 use std::borrow::Cow;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        system::{Local, Query, SystemParam},
-    },
-    math::{Dir3, Ray3d, Vec3},
-    transform::components::Transform,
+    ecs::system::SystemParam,
+    prelude::{Dir3, Entity, Local, Query, Ray3d, Transform, Vec3},
 };
 
 use super::surface_now::surface_now;

@@ -3,24 +3,18 @@
 use std::ops::RangeInclusive;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    camera::visibility::{ViewVisibility, VisibilitySystems},
-    color::{Color, Srgba},
-    ecs::{
-        component::Component,
-        query::QueryData,
-        reflect::ReflectComponent,
-        schedule::IntoScheduleConfigs,
-        system::{Local, Query, Res},
-    },
+    camera::visibility::VisibilitySystems,
+    ecs::query::QueryData,
     gizmos::{
         AppGizmoBuilder, GizmoPlugin,
         config::{GizmoConfigGroup, GizmoConfigStore},
         gizmos::Gizmos,
     },
-    math::{Isometry3d, Quat, Rect, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::{TransformSystems, components::Transform},
+    prelude::{
+        App, Color, Component, IntoScheduleConfigs, Isometry3d, Local, Plugin, PostUpdate, Quat,
+        Query, Rect, Reflect, ReflectComponent, ReflectDefault, Res, Srgba, Transform,
+        TransformSystems, Vec3, ViewVisibility,
+    },
 };
 
 use crate::{

@@ -1,6 +1,6 @@
 //! Sleeping cloths, which need no preparation.
 
-use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
+use bevy::prelude::{DetectChanges, Vec3};
 
 use super::preparing::{PrepareQueryItem, Surroundings};
 use crate::{
@@ -24,7 +24,6 @@ pub(super) fn sleeps_as_it_was(
         return false;
     }
     let source = built.source();
-    let changes = cloth.game.changes();
     // If something wakes it in this tick, it continues with the step that it would have been prepared with.
     let is_prepared = (cloth.scratch.step).is_some_and(|step| step.seconds == seconds);
     is_prepared
@@ -35,10 +34,7 @@ pub(super) fn sleeps_as_it_was(
         && cloth.game.teleport.is_none()
         && !around.roots.jumps(cloth.entity)
         && is_in_same_pose(cloth, around)
-        && cloth.fault.is_none()
-        && built.has_grain(cloth.game.grain(), changes.grain)
-        && built.is_torn_by(cloth.game.tears(), changes.tears)
-        && built.is_made_from(&changes, &inputs.material, cloth.game.pins())
+        && built.is_made_from(&cloth.game.changes(), &inputs.material, cloth.game.pins())
         && around.sources.find(cloth.entity, &cloth.game.cloth, source) == Ok(source)
         && forces.on(built.surface()).is_ok_and(|forces| {
             let ball = || ball(built, &cloth.particles, state.stretch.bound, &cloth.frame);

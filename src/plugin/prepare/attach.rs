@@ -5,7 +5,6 @@ use crate::{
     plugin::{
         authoring::Attached,
         frame::{ClothFrame, rigid},
-        state::ClothScratch,
     },
     solver::PinMotion,
 };
@@ -25,11 +24,8 @@ pub(crate) fn follow_targets(cloth: &mut PrepareQueryItem, teleport_from: Option
         (cloth.scratch.pins).retain(|motion| mass(motion) == Some(0.0));
     }
     let (particles, state, frame) = (&mut cloth.particles, &mut *cloth.state, &*cloth.frame);
-    let ClothScratch {
-        targets: places,
-        pins: motions,
-        ..
-    } = &mut *cloth.scratch;
+    let scratch = &mut *cloth.scratch;
+    let (places, motions) = (&scratch.targets, &mut scratch.pins);
     if let Some(first) = places.first() {
         let pose = rigid(first);
         let was = state.attachments.first_target.replace(pose);

@@ -11,8 +11,7 @@ use super::{
 };
 use crate::{
     cloth::{
-        ClothError, ClothParticles, ClothShape, ClothTears, DensityFactors, MaterialFactors,
-        MeshError, Surface,
+        ClothError, ClothParticles, ClothShape, ClothTears, DensityFactors, MeshError, Surface,
     },
     plugin::state::{BuildRequest, BuiltFrom, Changes, FailedBuild, KnownShape, Recipe, Shared},
     solver::{TickStep, TimeOrder},
@@ -63,7 +62,7 @@ impl Building<'_, '_> {
         let (built, state) = (&mut *self.built, &mut *self.state);
         if is_kept {
             if let Some(from) = &mut built.from {
-                from.changes.tears = wanted.changes.tears;
+                from.changes = wanted.changes;
             }
             return Ok(build);
         }
@@ -98,15 +97,8 @@ impl Building<'_, '_> {
     }
 
     fn build_new(&mut self) -> Result<Build, ClothError> {
-        let Self {
-            wanted, sources, ..
-        } = *self;
-        let BuildInputs {
-            cloth,
-            material,
-            pins,
-            ..
-        } = *wanted;
+        let (wanted, sources) = (self.wanted, self.sources);
+        let (cloth, material, pins) = (wanted.cloth, wanted.material, wanted.pins);
         cloth.validate()?;
         wanted.check_material()?;
         let inputs = &self.state.inputs;
@@ -124,11 +116,6 @@ impl Building<'_, '_> {
             tears,
             as_mesh,
         };
-        let mut factors = MaterialFactors::default();
-        let of = |surface: &Surface| {
-            factors = wanted.factors(surface)?;
-            Ok(factors.stiffness.clone())
-        };
         let request = (wanted.is_async && !self.state.resumes).then(|| BuildRequest {
             recipe: recipe.clone(),
             material: *material,
@@ -140,7 +127,8 @@ impl Building<'_, '_> {
             Some(request) => self.parts.get_built(&request, || sources.mesh(&recipe))?,
             None => None,
         };
-        let shared = self.parts.get(&recipe, material, None, of, || {
+        let of = |surface: &Surface| wanted.factors(surface);
+        let (shared, factors) = self.parts.get(&recipe, material, None, of, || {
             recipe.surface(&sources.mesh(&recipe)?)
         })?;
         let surface = &shared.surface;

@@ -1,6 +1,6 @@
 //! The inputs and the result of building a cloth.
 
-use bevy::{ecs::change_detection::Mut, math::Vec3};
+use bevy::prelude::{Mut, Vec3};
 
 use super::source::Sources;
 use crate::{

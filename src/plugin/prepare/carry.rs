@@ -1,6 +1,6 @@
 //! Moves the particles when their frame moves, and sees whether their pins jump.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::prelude::{Isometry3d, Vec3};
 
 use crate::{
     cloth::ClothParticles,

@@ -1,12 +1,6 @@
 //! The first step of a tick: builds new cloths, and checks and takes over every input.
 
-use bevy::{
-    ecs::{
-        change_detection::{DetectChanges, Mut},
-        system::{Commands, Query, Res, ResMut},
-    },
-    time::Time,
-};
+use bevy::prelude::{Commands, DetectChanges, Mut, Query, Res, ResMut, Time};
 
 use super::{
     asleep::sleeps_as_it_was,

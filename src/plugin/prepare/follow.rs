@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use bevy::ecs::change_detection::{DetectChangesMut, Mut};
+use bevy::prelude::{DetectChangesMut, Mut};
 
-use super::build_inputs::{Build, BuildInputs, Building};
+use super::build_inputs::{Build, Building};
 use crate::{
     cloth::{ClothError, ClothMaterial, ClothParticles, ParticleError, Surface},
     plugin::state::{Recipe, Shared, Stiffnesses},
@@ -13,9 +13,7 @@ use crate::{
 impl Building<'_, '_> {
     /// Takes over another grain, or none: springs and bending follow other directions, the particles stay as they are.
     pub(super) fn follow_grain(&mut self) -> Result<Build, ClothError> {
-        let Self {
-            wanted, sources, ..
-        } = *self;
+        let (wanted, sources) = (self.wanted, self.sources);
         wanted.check_material()?;
         wanted.pins.validate(self.built.surface())?;
         let Some(known) = &self.built.shared.recipe else {
@@ -25,8 +23,8 @@ impl Building<'_, '_> {
             grain: wanted.grain.cloned(),
             ..known.clone()
         };
-        let of = |surface: &Surface| Ok(wanted.factors(surface)?.stiffness);
-        let shared = self.parts.get(&recipe, wanted.material, None, of, || {
+        let of = |surface: &Surface| wanted.factors(surface);
+        let (shared, _) = self.parts.get(&recipe, wanted.material, None, of, || {
             recipe.surface(&sources.mesh(&recipe)?)
         })?;
         // A change that fails leaves the springs as they are.
@@ -50,13 +48,13 @@ impl Building<'_, '_> {
 
     /// Takes over another material, map of it, or other pins, and springs, if these change.
     pub(super) fn follow_changes(&mut self) -> Result<(), ClothError> {
-        if self.follow_masses()?
-            && let Some(from) = &self.built.from
-        {
-            let (shared, factors) = (&self.built.shared, &from.factors.stiffness);
-            let shared = self
-                .parts
-                .with_material(shared, self.wanted.material, factors);
+        let are_others = self.follow_masses()?;
+        let known = &self.built.shared;
+        if let (Some(from), Some(recipe), true) = (&self.built.from, &known.recipe, are_others) {
+            let of = |_: &Surface| Ok(from.factors.clone());
+            // It exists, so it is not made.
+            let surface = || Ok((*known.surface).clone());
+            let (shared, _) = (self.parts).get(recipe, self.wanted.material, None, of, surface)?;
             self.take_springs(shared);
         }
         Ok(())
@@ -65,14 +63,9 @@ impl Building<'_, '_> {
     /// Takes over another material, map of it, or other pins: masses only where they change, so that a mass that the game has set
     /// outlasts a change of damping. Returns whether the springs are others.
     pub(super) fn follow_masses(&mut self) -> Result<bool, ClothError> {
-        let Self {
-            wanted,
-            particles,
-            built,
-            state,
-            ..
-        } = self;
-        let BuildInputs { material, pins, .. } = **wanted;
+        let wanted = self.wanted;
+        let (built, state) = (&mut *self.built, &mut *self.state);
+        let (particles, material, pins) = (&mut *self.particles, wanted.material, wanted.pins);
         check_count(particles, built.surface())?;
         let Some(from) = &mut built.from else {
             return Ok(false);

@@ -1,9 +1,6 @@
 //! Frozen cloths, which keep their shape and move with their carrier, and the start of their motion when they thaw.
 
-use bevy::{
-    ecs::change_detection::{DetectChanges, DetectChangesMut},
-    math::Isometry3d,
-};
+use bevy::prelude::{DetectChanges, DetectChangesMut, Isometry3d};
 
 use super::{named::Targets, preparing::PrepareQueryItem};
 use crate::{

@@ -3,20 +3,11 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        entity::Entity,
-        entity_disabling::Disabled,
-        hierarchy::ChildOf,
-        lifecycle::Remove,
-        observer::On,
-        query::{Allow, Has, QueryData},
-        system::{Commands, Local, Query, Res},
-        world::World,
+    ecs::{entity_disabling::Disabled, query::QueryData},
+    prelude::{
+        Allow, ChildOf, Commands, DetectChanges, Entity, Has, Local, On, Query, Ref, Remove, Res,
+        Time, Transform, Vec2, Vec3, World,
     },
-    math::{Vec2, Vec3},
-    time::Time,
-    transform::components::Transform,
 };
 
 use super::roots::Roots;

@@ -1,12 +1,8 @@
 //! Which cloths are near each other: their sub-steps run together.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityIndexSet},
-        resource::Resource,
-        system::{Query, Res, ResMut},
-    },
-    math::Vec3,
+    ecs::entity::EntityIndexSet,
+    prelude::{Entity, Query, Res, ResMut, Resource, Vec3},
 };
 
 use super::{neighbour::Neighbour, seams::Seams};

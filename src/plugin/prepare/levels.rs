@@ -1,13 +1,8 @@
 //! Chooses the level of detail of each cloth, and which cloths are moved in a tick.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::{Has, QueryData, With},
-        system::{Local, Query, Res, ResMut},
-    },
-    math::Vec3,
-    time::Time,
+    ecs::query::QueryData,
+    prelude::{Entity, Has, Local, Query, Res, ResMut, Time, Vec3, With},
 };
 
 use super::{
@@ -98,18 +93,14 @@ pub(crate) fn choose_levels(
     for mut cloth in &mut cloths {
         let mut own = cloth.wanted(global, &cameras);
         if let ClothLodLevel::Every(_) = own.level {
-            let Span {
-                centre,
-                radius,
-                layers,
-                ..
-            } = own.span;
-            let near = tree.near(centre, radius);
+            let span = own.span;
+            let near = tree.near(span.centre, span.radius);
             let mut near = near.filter_map(|entity| colliders.get(entity).ok());
             let comes_near = near.any(|(motion, others)| {
-                layers.interacts_with(others.copied().unwrap_or_default())
+                span.layers
+                    .interacts_with(others.copied().unwrap_or_default())
                     && (motion.is_moving() || motion.is_body())
-                    && motion.comes_near(centre, radius)
+                    && motion.comes_near(span.centre, span.radius)
             });
             let kept = &mut cloth.state.lod.kept;
             *kept = match comes_near {

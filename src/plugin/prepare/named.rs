@@ -3,16 +3,9 @@
 use std::iter;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        entity_disabling::Disabled,
-        hierarchy::ChildOf,
-        name::Name,
-        query::{Allow, QueryFilter},
-        system::{Query, SystemParam},
-    },
+    ecs::{entity_disabling::Disabled, query::QueryFilter, system::SystemParam},
     math::Affine3A,
-    transform::{components::GlobalTransform, helper::TransformHelper},
+    prelude::{Allow, ChildOf, Entity, GlobalTransform, Name, Query, TransformHelper},
 };
 
 use crate::{

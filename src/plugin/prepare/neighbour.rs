@@ -1,8 +1,8 @@
 //! A cloth that others may touch, or that is sewn to others.
 
 use bevy::{
-    ecs::{entity::Entity, query::QueryData},
-    math::{Mat3, Vec3},
+    ecs::query::QueryData,
+    prelude::{Entity, Mat3, Vec3},
 };
 
 use crate::{

@@ -6,7 +6,7 @@ use super::preparing::PrepareQueryItem;
 use crate::{
     cloth::{ClothMaterial, Pin, Springs, Surface},
     plugin::{
-        state::{Inputs, Notice, Notices},
+        state::{Inputs, Notices},
         threads::{MIN_TO_SPLIT, threads},
     },
 };
@@ -41,9 +41,10 @@ pub(super) fn notice_new(cloth: &mut PrepareQueryItem, inputs: &Inputs, notices:
             step.seconds * 1.0e3,
         )
     });
-    for (notice, text) in [(Notice::PinsNothing, vain), (Notice::TooSlow, slow)] {
+    let given = &mut cloth.built.noticed.given;
+    for (given, text) in given.iter_mut().zip([vain, slow]) {
         if let Some(text) = text
-            && cloth.built.noticed.given.insert(notice)
+            && !std::mem::replace(given, true)
         {
             notices.add(cloth.entity, text);
         }

@@ -1,9 +1,8 @@
 //! The data from which a cloth is prepared.
 
-use bevy::ecs::{
-    entity::Entity,
-    query::{QueryData, With, Without},
-    system::{Query, Res, SystemParam},
+use bevy::{
+    ecs::{query::QueryData, system::SystemParam},
+    prelude::{Entity, Query, Res, With, Without},
 };
 
 use super::{

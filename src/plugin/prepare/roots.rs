@@ -1,16 +1,8 @@
 //! The motion of characters in a tick, and their teleports.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        entity_disabling::Disabled,
-        hierarchy::ChildOf,
-        query::{Allow, With},
-        resource::Resource,
-        system::{Query, Res, ResMut, SystemParam},
-    },
-    math::{Isometry3d, Vec3},
-    time::Time,
+    ecs::{entity_disabling::Disabled, system::SystemParam},
+    prelude::{Allow, ChildOf, Entity, Isometry3d, Query, Res, ResMut, Resource, Time, Vec3, With},
 };
 
 use crate::{

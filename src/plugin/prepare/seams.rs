@@ -3,15 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        lifecycle::Remove,
-        observer::On,
-        query::{QueryData, With},
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut},
-    },
-    math::Vec3,
+    ecs::query::QueryData,
+    prelude::{Commands, Entity, On, Query, Remove, ResMut, Resource, Vec3, With},
 };
 
 use super::{
@@ -57,11 +50,6 @@ pub(crate) struct SeamQuery {
 }
 
 impl Seams {
-    /// Whether there were any in the tick before.
-    pub fn were_there(seams: Res<Self>) -> bool {
-        !seams.active.is_empty()
-    }
-
     /// Whether a cloth is sewn to anything.
     pub fn hold(&self, cloth: Entity) -> bool {
         let mut cloths = self.active.iter().flat_map(|seam| seam.cloths);
@@ -81,12 +69,8 @@ pub(crate) fn prepare_seams(
     std::mem::swap(&mut all.active, &mut all.before);
     all.active.clear();
     for mut seam in &mut seams {
-        let outcome = seam.prepare(&mut cloths, &names);
-        let (outcome, active) = match outcome {
-            Ok(active) => (Ok(()), active),
-            Err(error) => (Err(error), None),
-        };
-        all.active.extend(active);
+        let active = seam.prepare(&mut cloths, &names);
+        let outcome = active.map(|active| all.active.extend(active));
         ClothFault::report(&mut commands, seam.entity, seam.fault, Part::Seam, outcome);
     }
     // Whichever was spawned first.

@@ -2,17 +2,14 @@
 
 use std::sync::Arc;
 
-use bevy::{
-    ecs::change_detection::{DetectChanges, Mut},
-    math::{Isometry3d, Quat, Vec3},
-};
+use bevy::prelude::{DetectChanges, Isometry3d, Mut, Quat, Vec3};
 
 use super::{carry::set_motion, preparing::PrepareQueryItem, source::Sources};
 use crate::{
     cloth::{ClothError, ClothParticles},
     plugin::{
         frame::ClothFrame,
-        state::{ClothScratch, Pose, SkinLimits},
+        state::{Pose, SkinLimits},
     },
     solver::PinMotion,
 };
@@ -190,12 +187,8 @@ fn teleport_to_pose([from, to]: [&Pose; 2], turn: Quat, particles: &mut Mut<Clot
 /// Moves held particles with the pose in this tick. Keeps the others in their ball and outside their
 /// backstop. If the cloth is new or `jumps`, held particles are put where the pose ends.
 fn follow_pose(cloth: &mut PrepareQueryItem, jumps: bool) {
-    let ClothScratch {
-        pose: from,
-        constraints,
-        pins: motions,
-        ..
-    } = &mut *cloth.scratch;
+    let scratch = &mut *cloth.scratch;
+    let (from, motions, constraints) = (&scratch.pose, &mut scratch.pins, &mut scratch.constraints);
     let (to, particles) = (&cloth.state.pose, &mut cloth.particles);
     constraints.clear();
     let Some(limits) = &cloth.built.skin else {

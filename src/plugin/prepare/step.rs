@@ -1,6 +1,6 @@
 //! The start of a cloth's tick, once the cloth is in place.
 
-use bevy::{ecs::change_detection::DetectChanges, math::Vec3};
+use bevy::prelude::{DetectChanges, Vec3};
 
 use super::{
     asleep::ball,
@@ -107,7 +107,6 @@ pub(super) fn prepare_step(
         has_layers: inputs.self_collision.is_some(),
     });
     scratch.substepping = settings.substepping;
-    scratch.is_in_island = false;
 }
 
 /// Hands the solver the creases of the last tick. A cloth that does not crease any more has none.

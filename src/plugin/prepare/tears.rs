@@ -3,17 +3,13 @@
 use std::mem;
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::Changed,
-        system::{Query, ResMut},
-    },
+    prelude::{Changed, Entity, Query, ResMut},
     tasks::{AsyncComputeTaskPool, TaskPool},
 };
 
 use super::build_inputs::{Build, Building};
 use crate::{
-    cloth::{ClothError, ClothMaterial, ClothMaterialMap, ClothTears, MaterialFactors, Surface},
+    cloth::{ClothError, ClothMaterial, ClothMaterialMap, ClothTears, Surface},
     plugin::{
         authoring::Attached,
         state::{BuildRequest, ClothBuilt, ClothState, Recipe, SharedParts},
@@ -77,13 +73,9 @@ impl Building<'_, '_> {
         let before = self.built.surface().clone();
         // The known parts don't keep it.
         let _kept_alive = self.parts.built_ahead(&recipe);
-        let mut factors = MaterialFactors::default();
-        let of = |surface: &Surface| {
-            factors = wanted.factors(surface)?;
-            Ok(factors.stiffness.clone())
-        };
+        let of = |surface: &Surface| wanted.factors(surface);
         let known = Some(&*self.built.shared);
-        let shared = self.parts.get(&recipe, wanted.material, known, of, || {
+        let (shared, factors) = self.parts.get(&recipe, wanted.material, known, of, || {
             recipe.opened(before.whole())
         })?;
         let surface = &shared.surface;
@@ -92,14 +84,10 @@ impl Building<'_, '_> {
         let Some(parents) = surface.parents_in(&before) else {
             return Ok(Build::Kept);
         };
-        let Self {
-            particles,
-            built,
-            state,
-            ..
-        } = self;
+        let (particles, built) = (&mut *self.particles, &mut *self.built);
+        let state = &mut *self.state;
         let torn = particles.torn(&before, surface, &parents, wanted.has_layers);
-        ***particles = torn;
+        **particles = torn;
         let count = recipe.tears.count_beyond(built.tears());
         let at = ends_of_tear(
             [&recipe.tears, built.tears()],

@@ -1,12 +1,6 @@
 //! Prepares the air of a tick.
 
-use bevy::{
-    ecs::{
-        entity::Entity,
-        system::{Commands, Query, Res, ResMut},
-    },
-    time::Time,
-};
+use bevy::prelude::{Commands, Entity, Query, Res, ResMut, Time};
 
 use crate::plugin::{
     authoring::{ClothOrder, ClothWind, ClothWindZone, PlacedZone},

@@ -4,13 +4,10 @@
 //! visited nodes, and the candidates.
 
 use bevy::{
-    ecs::{
-        entity::Entity,
-        query::QueryData,
-        system::{Query, ResMut},
-    },
-    math::{Vec3, bounding::BoundingSphere},
+    ecs::query::QueryData,
+    math::bounding::BoundingSphere,
     platform::time::Instant,
+    prelude::{Entity, Query, ResMut, Vec3},
 };
 
 use super::{
@@ -22,7 +19,7 @@ use super::{
         BroadPhaseBounds, ClothBuilt, ClothContacts, ClothScratch, ClothSearch, ClothState,
         ClothStats, RestsOn,
     },
-    threads::threads,
+    threads::for_each,
 };
 use crate::{
     cloth::ClothParticles,
@@ -109,47 +106,27 @@ pub(crate) fn rebuild_hierarchies(
         tree: &tree,
         all: colliders,
     };
-    if taking_part >= MIN_TO_SHARE && threads() > 1 {
-        cloths
-            .par_iter_mut()
-            .for_each(|mut cloth| cloth.look_around(&colliders));
-    } else {
-        cloths
-            .iter_mut()
-            .for_each(|mut cloth| cloth.look_around(&colliders));
-    }
+    for_each(&mut cloths, taking_part >= MIN_TO_SHARE, |mut cloth| {
+        cloth.look_around(&colliders);
+    });
 }
 
 /// Finds the particles that each collider near may touch within the tick.
 pub(crate) fn query_collisions(mut cloths: Query<SearchQuery>) {
-    let searched = cloths
-        .iter()
-        .filter(|cloth| cloth.broad_phase.is_searched)
-        .count();
-    if searched == 0 {
-        return;
-    }
-    if searched >= MIN_TO_SHARE && threads() > 1 {
-        cloths.par_iter_mut().for_each(|mut cloth| cloth.query());
-    } else {
-        cloths.iter_mut().for_each(|mut cloth| cloth.query());
+    let is_searched = |cloth: &SearchQueryReadOnlyItem| cloth.broad_phase.is_searched;
+    let searched = cloths.iter().filter(is_searched).count();
+    if searched > 0 {
+        let at_once = searched >= MIN_TO_SHARE;
+        for_each(&mut cloths, at_once, |mut cloth| cloth.query());
     }
 }
 
 impl SearchQueryItem<'_, '_> {
     /// Finds the colliders near, if the cloth takes part in the tick and there are any.
     fn look_around(&mut self, colliders: &Colliders) {
-        let BroadPhaseBounds {
-            centre,
-            radius,
-            takes_part,
-            has_sleeping_contacts,
-            ..
-        } = *self.broad_phase;
-        let layers = self.layers();
-        if takes_part
-            && (has_sleeping_contacts || colliders.near(centre, radius, layers).next().is_some())
-        {
+        let bounds = *self.broad_phase;
+        let mut near = colliders.near(bounds.centre, bounds.radius, self.layers());
+        if bounds.takes_part && (bounds.has_sleeping_contacts || near.next().is_some()) {
             self.find_near(colliders);
         }
     }
@@ -179,19 +156,14 @@ impl SearchQueryItem<'_, '_> {
         }
         let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
         let layers = self.layers();
-        let ClothScratch {
-            near,
-            detection,
-            reach,
-            carried,
-            ..
-        } = &mut *self.scratch;
+        let scratch = &mut *self.scratch;
+        let (near, carried) = (&mut scratch.near, scratch.carried.as_ref());
         // Besides moving by itself, a particle may be dragged by a collider, to other colliders that may drag it on.
         let mut dragged = 0.0_f32;
         loop {
             near.clear();
             let seen = |(entity, motion): (Entity, &ColliderMotion)| {
-                Some((entity, motion.seen_from(self.frame, carried.as_ref())?))
+                Some((entity, motion.seen_from(self.frame, carried)?))
             };
             let around = colliders.near(centre, radius + dragged, layers);
             near.extend(around.filter_map(seen));
@@ -206,8 +178,8 @@ impl SearchQueryItem<'_, '_> {
         }
         // Independent of the order of the tree, and of spawning.
         near.sort_unstable_by_key(|(entity, _)| colliders.order(*entity));
-        detection.begin(self.built.surface(), *reach + dragged);
         let near = near.len();
+        (scratch.detection).begin(self.built.surface(), scratch.reach + dragged);
         self.stats.colliders_near = near;
         if near == 0 {
             // The collider that it slept on is gone.
@@ -217,18 +189,13 @@ impl SearchQueryItem<'_, '_> {
         }
         self.broad_phase.is_searched = true;
         let stretch = self.state.stretch.bound;
-        let (method, reason) = self
-            .scratch
-            .search
-            .chosen(self.particles.len(), near, stretch);
+        let (method, reason) = (scratch.search).chosen(self.particles.len(), near, stretch);
         (self.stats.search, self.stats.reason) = (method, reason);
         if let SearchMethod::Tree(volume, rule) = method {
             let start = Instant::now();
             let tree = self.built.tree();
-            let outcome = self
-                .search
-                .bounds
-                .rebuild((volume, rule), tree, self.particles, stretch);
+            let bounds = &mut self.search.bounds;
+            let outcome = bounds.rebuild((volume, rule), tree, self.particles, stretch);
             debug_assert!(outcome.is_ok(), "the choice was checked as the tick began");
             self.stats.rebuild_ms = milliseconds_since(start);
         }
@@ -243,28 +210,20 @@ impl SearchQueryItem<'_, '_> {
             let moving = motion.and_then(|motion| motion.seen_from(self.frame, None));
             moving.is_some_and(|moving| known.still_rests(&moving, far))
         };
-        if !self.state.resting.on.iter_mut().all(rests_still) {
+        let state = &mut *self.state;
+        let known = &mut state.resting.on;
+        if !known.iter_mut().all(rests_still) {
             return false;
         }
-        let ClothScratch {
-            sleep_query,
-            contact_settings,
-            ..
-        } = &mut *self.scratch;
-        let stretch = self.state.stretch.bound;
-        let (bounds, query) = sleep_query;
+        let scratch = &mut *self.scratch;
+        let (settings, stretch) = (&scratch.contact_settings, state.stretch.bound);
+        let (bounds, query) = &mut scratch.sleep_query;
         let (tree, surface) = (self.built.tree(), self.built.surface());
         let BroadPhaseBounds { centre, radius, .. } = *self.broad_phase;
-        let cover = cover(contact_settings, stretch, self.built);
+        let cover = cover(settings, stretch, self.built);
         let mut has_bounds = false;
         for (entity, motion) in colliders.near(centre, radius, layers) {
-            if self
-                .state
-                .resting
-                .on
-                .iter()
-                .any(|known| known.entity == entity)
-            {
+            if known.iter().any(|known| known.entity == entity) {
                 continue;
             }
             let Some(collider) = motion.seen_from(self.frame, None) else {
@@ -278,12 +237,12 @@ impl SearchQueryItem<'_, '_> {
             }
             // Nothing of the cloth moves towards anything.
             let (probe, narrow_phase) =
-                Detection::probe_within(0.0, &collider, contact_settings, surface, cover, root);
+                Detection::probe_within(0.0, &collider, settings, surface, cover, root);
             query.clear();
             query.search(tree, bounds, self.particles, &probe);
             let met = match narrow_phase {
                 NarrowPhase::Triangles | NarrowPhase::Auto => {
-                    let bare = collider.probe(0.0, contact_settings.particle_radius, root);
+                    let bare = collider.probe(0.0, settings.particle_radius, root);
                     meets_triangles(surface, self.particles, query.candidates(), &bare)
                 }
                 NarrowPhase::Particles => !query.candidates().is_empty(),
@@ -305,18 +264,12 @@ impl SearchQueryItem<'_, '_> {
         let scratch = &mut *self.scratch;
         let ClothSearch { bounds, query } = &mut *self.search;
         let (tree, surface) = (self.built.tree(), self.built.surface());
-        let cover = cover(
-            &scratch.contact_settings,
-            self.state.stretch.bound,
-            self.built,
-        );
+        let (detection, settings) = (&mut scratch.detection, &scratch.contact_settings);
+        let cover = cover(settings, self.state.stretch.bound, self.built);
         query.clear();
         let mut is_dragged = false;
         for (id, &(entity, ref collider)) in scratch.near.iter().enumerate() {
-            let (probe, narrow_phase) =
-                scratch
-                    .detection
-                    .probe(collider, &scratch.contact_settings, surface, cover, &root);
+            let (probe, narrow_phase) = detection.probe(collider, settings, surface, cover, &root);
             let found = match self.stats.search {
                 SearchMethod::Tree(..) => query.search(tree, bounds, self.particles, &probe),
                 SearchMethod::Auto | SearchMethod::Scan => query.scan(self.particles, &probe),
@@ -328,24 +281,15 @@ impl SearchQueryItem<'_, '_> {
             if known.is_none_or(|contact| contact.is_embedded) {
                 let others = scratch.near.iter().map(|(_, other)| other);
                 let was_embedded = known.is_some();
-                scratch
-                    .detection
-                    .embed(id, collider, was_embedded, found, self.particles, others);
+                detection.embed(id, collider, was_embedded, found, self.particles, others);
             }
-            scratch
-                .detection
-                .add(id, collider, narrow_phase, found, self.particles);
+            detection.add(id, collider, narrow_phase, found, self.particles);
         }
         if is_dragged {
             self.state.rest.disturb();
         }
         let by_triangles = |touch: &&Touch| touch.narrow_phase == NarrowPhase::Triangles;
-        self.stats.by_triangles = scratch
-            .detection
-            .touches()
-            .iter()
-            .filter(by_triangles)
-            .count();
+        self.stats.by_triangles = detection.touches().iter().filter(by_triangles).count();
         self.stats.nodes_visited = query.nodes_visited();
         self.stats.leaf_tests = query.leaf_tests();
         self.stats.query_ms = milliseconds_since(start);

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{change_detection::Tick, component::Component},
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::change_detection::Tick,
+    prelude::{Component, Reflect, ReflectDefault, Vec3},
 };
 
 use super::{notices::Noticed, pose::SkinLimits, recipe::Source, shared::Shared};
@@ -151,8 +150,7 @@ impl ClothBuilt {
         (self.shared.recipe.as_ref()).is_some_and(|recipe| recipe.as_mesh)
     }
 
-    /// Whether it was made from a `Cloth` and a `ClothMaterialMap` that were changed then, and from this material and these
-    /// pins.
+    /// Whether it was made from components that were changed then, and from this material and these pins.
     pub(crate) fn is_made_from(
         &self,
         changes: &Changes,
@@ -160,9 +158,7 @@ impl ClothBuilt {
         pins: &Pins,
     ) -> bool {
         self.from.as_ref().is_some_and(|from| {
-            (from.changes.cloth, from.changes.map) == (changes.cloth, changes.map)
-                && from.material == *material
-                && from.pins == *pins
+            from.changes == *changes && from.material == *material && from.pins == *pins
         })
     }
 

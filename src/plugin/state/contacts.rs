@@ -1,14 +1,8 @@
 //! Contacts of cloths with colliders, and the messages about them.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        message::Message,
-        reflect::{ReflectComponent, ReflectMapEntities},
-    },
-    math::{Quat, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    ecs::{entity::MapEntities, reflect::ReflectMapEntities},
+    prelude::{Component, Entity, Message, Quat, Reflect, ReflectComponent, ReflectDefault, Vec3},
 };
 
 use crate::contact::{ContactPoint, Detection, MovingCollider, NarrowPhase};
@@ -117,9 +111,9 @@ impl ClothContacts {
                 ..point
             });
             (self.points).extend(points.filter(|point| !sleeps(point.particle)));
-            let collider = near.get(touch.id).map(|(collider, _)| *collider);
+            let collider = near[touch.id].0;
             let mut before = self.before.iter();
-            let before = before.find(|before| Some(before.collider) == collider);
+            let before = before.find(|before| before.collider == collider);
             let known = before.and_then(|before| {
                 let [first, end] = before.points;
                 self.points_before.get(first..end)
@@ -138,12 +132,12 @@ impl ClothContacts {
             let depths = self.points[first..].iter().map(|point| point.depth);
             let particles = depths.clone().filter(|depth| *depth > 0.0).count();
             let deepest = depths.fold(touch.deepest, f32::max);
-            let Some((collider, _)) = near.get(touch.id).filter(|_| particles > 0) else {
+            if particles == 0 {
                 self.points.truncate(first);
                 continue;
-            };
+            }
             self.now.push(ClothContact {
-                collider: *collider,
+                collider,
                 particles,
                 // Beyond what a float can hold: the largest.
                 deepest_penetration: deepest.min(f32::MAX),

@@ -1,13 +1,8 @@
 //! Faults: cloths and colliders with bad input are left out.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, MapEntities},
-        reflect::{ReflectComponent, ReflectMapEntities},
-        system::Commands,
-    },
-    reflect::Reflect,
+    ecs::{entity::MapEntities, reflect::ReflectMapEntities},
+    prelude::{Commands, Component, Entity, Reflect, ReflectComponent},
 };
 
 use crate::{

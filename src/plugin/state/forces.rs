@@ -1,11 +1,8 @@
 //! The forces of a game on a cloth in a tick.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, MapEntities},
-        query::QueryData,
-    },
-    math::Vec3,
+    ecs::{entity::MapEntities, query::QueryData},
+    prelude::{Entity, Vec3},
 };
 
 use super::wind_field::{EffectiveWind, WindField};

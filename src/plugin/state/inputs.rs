@@ -1,11 +1,8 @@
 //! The game's settings of a cloth: the components that are read, and their values in a tick.
 
 use bevy::{
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        query::QueryData,
-    },
-    math::Vec3,
+    ecs::query::QueryData,
+    prelude::{DetectChanges, Ref, Vec3},
 };
 
 use super::{

@@ -1,6 +1,6 @@
 //! The current level of detail of a cloth, and when it is simulated.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::prelude::{Isometry3d, Vec3};
 
 use crate::plugin::{authoring::ClothLodLevel, frame::Shift};
 

@@ -1,12 +1,8 @@
 //! Everything that a cloth's next tick depends on, besides its public components.
 
 use bevy::{
-    ecs::{
-        change_detection::Tick,
-        component::Component,
-        entity::{Entity, EntityMapper, MapEntities},
-    },
-    math::Isometry3d,
+    ecs::{change_detection::Tick, entity::MapEntities},
+    prelude::{Component, Entity, EntityMapper, Isometry3d},
 };
 
 use super::{forces::ForceState, inputs::Inputs, lod::LodState, pieces::Resting, pose::Pose};
@@ -105,20 +101,11 @@ pub(crate) struct InputMemory {
     pub as_mesh: bool,
 }
 
-impl InputMemory {
-    fn copy_from(&mut self, other: &Self) {
-        (self.written, self.known) = (other.written, other.known);
-        (self.opened, self.as_mesh) = (other.opened, other.as_mesh);
-        self.forces.clone_from(&other.forces);
-    }
-}
-
 impl ClothState {
     /// Copies `other` into its own memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         let mut own = std::mem::take(self);
         own.rest.copy_from(&other.rest);
-        own.inputs.copy_from(&other.inputs);
         own.attachments.copy_from(&other.attachments);
         own.pose.copy_from(&other.pose);
         own.resting.copy_from(&other.resting);
@@ -126,7 +113,7 @@ impl ClothState {
         own.creases.clone_from(&other.creases);
         *self = Self {
             rest: own.rest,
-            inputs: own.inputs,
+            inputs: other.inputs.clone(),
             attachments: own.attachments,
             pose: own.pose,
             resting: own.resting,
@@ -140,12 +127,6 @@ impl ClothState {
     pub(crate) fn wake(&mut self) {
         self.rest.disturb();
         self.resting.pieces.wake();
-    }
-
-    /// Takes over the creases as a tick ends.
-    pub(crate) fn remember_creases(&mut self, creases: &[f32]) {
-        self.creases.clear();
-        self.creases.extend_from_slice(creases);
     }
 
     /// Whether this state, read from a file, matches these particles.

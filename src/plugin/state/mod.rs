@@ -33,7 +33,7 @@ pub(crate) use forces::GameForces;
 pub(crate) use inputs::{GameQuery, Inputs};
 pub(crate) use lod::{Frozen, LodAction};
 pub use memory::ClothState;
-pub(crate) use notices::{Notice, Notices, log_notices};
+pub(crate) use notices::{Notices, log_notices};
 pub(crate) use parts::{ClothParts, OwnParts};
 pub(crate) use pose::{Pose, SkinLimits};
 pub(crate) use recipe::{KnownShape, Recipe, Source};

@@ -1,25 +1,8 @@
 //! Warnings about cloths that are simulated all the same: each is logged once, by name.
 
-use bevy::{
-    ecs::{
-        entity::Entity,
-        resource::Resource,
-        system::{Query, Res, ResMut},
-    },
-    log::warn,
-    platform::collections::HashSet,
-};
+use bevy::prelude::{Entity, Query, ResMut, Resource, warn};
 
 use crate::plugin::naming::{Named, Part};
-
-/// What can hardly be meant, and is no fault.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Notice {
-    /// A predicate holds for no particle.
-    PinsNothing,
-    /// A tick can't be simulated in the time that it stands for.
-    TooSlow,
-}
 
 /// Notices that have yet to be logged, each with its cloth and its text.
 #[derive(Resource, Debug, Default)]
@@ -30,19 +13,14 @@ impl Notices {
     pub fn add(&mut self, cloth: Entity, text: String) {
         self.0.push((cloth, text));
     }
-
-    /// Whether there is anything to log.
-    pub fn are_there(notices: Res<Self>) -> bool {
-        !notices.0.is_empty()
-    }
 }
 
-/// Which notices a cloth has been given.
+/// Which notices a cloth has been given: that a predicate holds for no particle, and that a tick takes longer than it lasts.
 #[derive(Debug, Default)]
 pub(crate) struct Noticed {
     /// Whether it was built, and not looked at since.
     pub is_due: bool,
-    pub given: HashSet<Notice>,
+    pub given: [bool; 2],
 }
 
 /// Logs the notices of a frame; equal texts in one line.

@@ -1,8 +1,8 @@
 //! Pieces of a torn cloth, which fall asleep one by one.
 
 use bevy::{
-    ecs::entity::{Entity, MapEntities},
-    math::Vec3,
+    ecs::entity::MapEntities,
+    prelude::{Entity, Vec3},
 };
 
 use super::resting::RestsOn;

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use bevy::{
     ecs::change_detection::Tick,
-    math::{Affine3A, Isometry3d, Quat, Vec3},
+    math::Affine3A,
+    prelude::{Isometry3d, Quat, Vec3},
 };
 
 use crate::{

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::math::Vec3;
 #[cfg(feature = "mesh")]
-use bevy::{asset::AssetId, mesh::Mesh};
+use bevy::prelude::{AssetId, Mesh};
 
 use crate::cloth::{ClothError, ClothGrain, ClothShape, ClothTears, Surface, TriangleMesh};
 

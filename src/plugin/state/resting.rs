@@ -1,8 +1,8 @@
 //! The colliders that a cloth sleeps on.
 
 use bevy::{
-    ecs::entity::{Entity, MapEntities},
-    math::{Isometry3d, Vec3},
+    ecs::entity::MapEntities,
+    prelude::{Entity, Isometry3d, Vec3},
 };
 
 use crate::contact::{BodyMass, ColliderShape, MovingCollider};

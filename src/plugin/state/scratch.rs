@@ -1,11 +1,9 @@
 //! Data that the systems of a tick hand on to each other, and the working memory of a tick.
 
 use bevy::{
-    ecs::{
-        component::Component,
-        entity::{Entity, EntityHashSet},
-    },
+    ecs::entity::EntityHashSet,
     math::Affine3A,
+    prelude::{Component, Entity},
 };
 
 use super::pose::Pose;

@@ -1,10 +1,6 @@
 //! The result of a search, and the region in which a cloth may be touched.
 
-use bevy::{
-    ecs::component::Component,
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Component, Reflect, ReflectDefault, Vec3};
 
 use crate::{
     hierarchy::{NodeBounds, TopDownQuery},

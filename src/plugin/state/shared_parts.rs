@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Weak};
 
-use bevy::ecs::{entity::Entity, resource::Resource};
+use bevy::prelude::{Entity, Resource};
 
 use super::{
     async_build::{AsyncBuilds, BuildRequest},
@@ -10,7 +10,9 @@ use super::{
     shared::{Shared, Stiffnesses},
 };
 use crate::{
-    cloth::{ClothError, ClothMaterial, MeshError, StiffnessFactors, Surface, TriangleMesh},
+    cloth::{
+        ClothError, ClothMaterial, MaterialFactors, MeshError, PaintError, Surface, TriangleMesh,
+    },
     plugin::threads::Threads,
 };
 
@@ -22,7 +24,7 @@ pub(crate) struct SharedParts {
 }
 
 impl SharedParts {
-    /// The shared data of cloths with this recipe and material, and the factors that `factors` finds for its surface. The
+    /// The shared data of cloths with this recipe and material, and the factors that `factors` finds for its surface; and these. The
     /// surface is made by `make` if there is none yet. `before` is of the same cloth with other tears.
     ///
     /// # Errors
@@ -32,29 +34,29 @@ impl SharedParts {
         recipe: &Recipe,
         material: &ClothMaterial,
         before: Option<&Shared>,
-        factors: impl FnOnce(&Surface) -> Result<Arc<StiffnessFactors>, ClothError>,
+        factors: impl FnOnce(&Surface) -> Result<MaterialFactors, PaintError>,
         make: impl FnOnce() -> Result<Surface, ClothError>,
-    ) -> Result<Arc<Shared>, ClothError> {
+    ) -> Result<(Arc<Shared>, MaterialFactors), ClothError> {
         let alike = self.alike(recipe);
         let surface = match alike.first() {
             Some(known) => known.surface.clone(),
             None => Arc::new(make()?),
         };
         let factors = factors(&surface)?;
-        let stiffnesses = Stiffnesses::of(material, &factors);
+        let stiffnesses = Stiffnesses::of(material, &factors.stiffness);
         if let Some(known) = alike.iter().find(|known| known.stiffnesses == stiffnesses) {
-            return Ok(known.clone());
+            return Ok((known.clone(), factors));
         }
         let shared = Shared::new(
             Threads::Compute,
             recipe.clone(),
             material,
             surface,
-            factors,
+            factors.stiffness.clone(),
             &alike,
             before,
         );
-        Ok(self.keep(shared))
+        Ok((self.keep(shared), factors))
     }
 
     /// Makes it known.
@@ -114,22 +116,5 @@ impl SharedParts {
         let all = self.known.iter().filter_map(Weak::upgrade);
         let alike = all.filter(|known| known.recipe.as_ref() == Some(recipe));
         alike.collect()
-    }
-
-    /// The same for a cloth whose material, or the factors of it, have changed.
-    pub fn with_material(
-        &mut self,
-        shared: &Arc<Shared>,
-        material: &ClothMaterial,
-        factors: &Arc<StiffnessFactors>,
-    ) -> Arc<Shared> {
-        let Some(recipe) = &shared.recipe else {
-            return shared.clone();
-        };
-        // A surface of that recipe exists, so it can't be refused.
-        let known = |_: &Surface| Ok(factors.clone());
-        let surface = || Ok((*shared.surface).clone());
-        let other = self.get(recipe, material, None, known, surface);
-        other.unwrap_or_else(|_| shared.clone())
     }
 }

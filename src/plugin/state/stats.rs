@@ -1,10 +1,6 @@
 //! Figures of a cloth's last tick.
 
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
+use bevy::prelude::{Component, Reflect, ReflectComponent, ReflectDefault, Vec3};
 
 use crate::{
     hierarchy::{SearchMethod, SearchReason},

@@ -1,9 +1,8 @@
 //! The velocity of the air at a position and a time.
 
 use bevy::{
-    ecs::resource::Resource,
-    math::{DVec3, Vec3},
-    time::Time,
+    math::DVec3,
+    prelude::{Resource, Time, Vec3},
 };
 use fastnoise_lite::{FastNoiseLite, NoiseType};
 

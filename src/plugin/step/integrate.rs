@@ -1,6 +1,6 @@
 //! The system that moves all cloths.
 
-use bevy::ecs::system::{Query, ResMut};
+use bevy::prelude::{Query, ResMut};
 
 use super::{
     member::{Member, members},
@@ -12,7 +12,7 @@ use super::{
 use crate::plugin::{
     naming::Named,
     prepare::{Island, Islands},
-    threads::{MIN_TO_SPLIT, threads},
+    threads::{MIN_TO_SPLIT, for_each, threads},
 };
 
 /// Cloths whose particles × sub-steps come to less are solved one after the other on this thread.
@@ -39,15 +39,9 @@ pub(crate) fn integrate(
             work += cloth.particles.len() * step.substeps as usize;
         }
     }
-    if awake > 1 && work >= MIN_TO_SHARE && threads() > 1 {
-        cloths
-            .par_iter_mut()
-            .for_each(|cloth| simulate_alone(cloth, &colliders, &names));
-    } else {
-        cloths
-            .iter_mut()
-            .for_each(|cloth| simulate_alone(cloth, &colliders, &names));
-    }
+    for_each(&mut cloths, awake > 1 && work >= MIN_TO_SHARE, |cloth| {
+        simulate_alone(cloth, &colliders, &names);
+    });
 }
 
 /// Cloths that may touch each other, or that are sewn together.

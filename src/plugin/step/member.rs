@@ -1,8 +1,8 @@
 //! The cloths of an island, in their tick.
 
 use bevy::{
-    ecs::{entity::EntityIndexSet, system::Query},
-    math::Isometry3d,
+    ecs::entity::EntityIndexSet,
+    prelude::{Isometry3d, Query},
 };
 
 use smallvec::SmallVec;

@@ -1,16 +1,7 @@
 //! Pushes of cloth on the bodies that it touches.
 
-use bevy::{
-    ecs::{
-        change_detection::{DetectChangesMut, Mut},
-        entity::Entity,
-        hierarchy::ChildOf,
-        query::Has,
-        system::{Local, Query, Res},
-    },
-    math::Vec3,
-    time::Time,
-    transform::components::Transform,
+use bevy::prelude::{
+    ChildOf, DetectChangesMut, Entity, Has, Local, Mut, Query, Res, Time, Transform, Vec3,
 };
 
 use crate::{

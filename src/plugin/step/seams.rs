@@ -1,8 +1,8 @@
 //! The seams of an island, in their tick.
 
 use bevy::{
-    ecs::{system::Query, world::Mut},
-    math::Isometry3d,
+    ecs::world::Mut,
+    prelude::{Isometry3d, Query},
 };
 
 use super::member::{Few, Member};

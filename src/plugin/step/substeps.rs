@@ -1,9 +1,8 @@
 //! The sub-steps of a tick: of one cloth, or of several that may touch each other, run together.
 
 use bevy::{
-    ecs::{entity::Entity, system::Query},
-    log::warn,
     platform::time::Instant,
+    prelude::{Entity, Query, warn},
 };
 
 use super::{

@@ -1,8 +1,8 @@
 //! A cloth in its tick: what each sub-step does to it, and what the tick leaves.
 
 use bevy::{
-    ecs::{change_detection::DetectChanges, entity::Entity, query::QueryData, system::Query},
-    math::Vec3,
+    ecs::query::QueryData,
+    prelude::{DetectChanges, Entity, Query, Vec3},
 };
 
 use crate::{
@@ -70,18 +70,18 @@ impl IntegrateQueryItem<'_, '_> {
         self.stats.air_impulse = rotation * forces.impulse();
         (self.stats.enclosed_volume, self.stats.gauge_pressure) = forces.enclosed();
         self.state.inputs.forces.memory = forces.memory;
-        self.state.remember_creases(self.built.solver.creases());
+        let creases = &mut self.state.creases;
+        creases.clear();
+        creases.extend_from_slice(self.built.solver.creases());
         self.stats.contacts = self.contacts.iter().map(|contact| contact.particles).sum();
     }
 
     /// Remembers the contacts of the cloth, in case it falls asleep.
     fn remember_contacts(&mut self) {
-        let ClothScratch {
-            near, detection, ..
-        } = &*self.scratch;
-        let touches = detection.touches().iter();
+        let scratch = &*self.scratch;
+        let touches = scratch.detection.touches().iter();
         // A body's own path, without the pushes of the tick.
-        let known = touches.filter_map(|touch| near.get(touch.id));
+        let known = touches.filter_map(|touch| scratch.near.get(touch.id));
         let known = known.map(|(entity, collider)| RestsOn::new(*entity, collider));
         self.state.resting.on.clear();
         self.state.resting.on.extend(known);
@@ -89,26 +89,22 @@ impl IntegrateQueryItem<'_, '_> {
 
     /// Notes the cloth's pushes on bodies. While it pushes one that moves, it does not rest.
     fn push_bodies(&mut self) {
-        let ClothScratch {
-            near,
-            detection,
-            pushed,
-            ..
-        } = &mut *self.scratch;
-        let ClothState { carriers, rest, .. } = &mut *self.state;
-        carriers.clear();
+        let (state, scratch) = (&mut *self.state, &mut *self.scratch);
+        let detection = &scratch.detection;
+        state.carriers.clear();
         let rotation = self.frame.isometry().rotation;
-        let bodies = near.iter().enumerate();
+        let bodies = scratch.near.iter().enumerate();
         for (id, (entity, collider)) in bodies.filter(|(_, near)| near.1.body.is_some()) {
             let carrying = detection.carriers(id).iter();
-            carriers.extend(carrying.map(|carrier| (*entity, *carrier)));
+            (state.carriers).extend(carrying.map(|carrier| (*entity, *carrier)));
             if let Some(change) = detection.body_change(id)
                 && change != BodyChange::default()
             {
                 let changes = [change, detection.body_held(id)];
-                pushed.push((*entity, changes.map(|change| change.turned(rotation))));
+                let changes = changes.map(|change| change.turned(rotation));
+                scratch.pushed.push((*entity, changes));
                 if !collider.is_settled() {
-                    rest.disturb();
+                    state.rest.disturb();
                 }
             }
         }
@@ -184,10 +180,8 @@ impl IntegrateQueryItem<'_, '_> {
     /// Sub-steps that hold the cloth together where something that moves forces it over the edges of a collider: these pass
     /// between particles.
     pub(crate) fn contact_substeps(&self, step: &TickStep, stretch: &Stretch) -> f32 {
-        let ClothScratch {
-            detection, pins, ..
-        } = &*self.scratch;
-        let is_pulled = !pins.is_empty();
+        let detection = &self.scratch.detection;
+        let is_pulled = !self.scratch.pins.is_empty();
         let depths = detection.touches().iter().filter_map(|touch| {
             let moves = is_pulled || touch.collider.max_surface_travel(f32::INFINITY) > 0.0;
             (moves && touch.collider.shape.has_edges()).then_some(touch.deepest)
@@ -206,12 +200,10 @@ impl IntegrateQueryItem<'_, '_> {
 
     /// Restores the bodies that particles carried as the last tick ended.
     pub(crate) fn recall_carriers(&mut self, substeps: u32) {
-        let ClothScratch {
-            near, detection, ..
-        } = &mut *self.scratch;
+        let scratch = &mut *self.scratch;
         let carriers = &self.state.carriers;
-        detection.recall(&mut self.particles, substeps, |id| {
-            let body = near[id].0;
+        (scratch.detection).recall(&mut self.particles, substeps, |id| {
+            let body = scratch.near[id].0;
             let own = carriers.iter().filter(move |(entity, _)| *entity == body);
             own.map(|(_, carrier)| *carrier)
         });
@@ -226,22 +218,17 @@ impl IntegrateQueryItem<'_, '_> {
     /// Pushes it out of colliders. Those that were far away as the tick began may be near now, and known ones keep their
     /// number. Returns whether anything moved.
     pub(crate) fn touch(&mut self, substep: SubStep, colliders: &Colliders) -> bool {
-        let ClothScratch {
-            near,
-            near_set,
-            detection,
-            contact_settings,
-            carried,
-            ..
-        } = &mut *self.scratch;
+        let scratch = &mut *self.scratch;
+        let (near, known) = (&mut scratch.near, &mut scratch.near_set);
+        let (settings, carried) = (&scratch.contact_settings, scratch.carried.as_ref());
         let layers = self.layers.copied().unwrap_or_default();
-        detection.respond(&mut self.particles, contact_settings, substep, |numbered| {
-            near_set.clear();
-            near_set.extend(near.iter().map(|(known, _)| *known));
+        (scratch.detection).respond(&mut self.particles, settings, substep, |numbered| {
+            known.clear();
+            known.extend(near.iter().map(|(entity, _)| *entity));
             for (entity, motion, others) in colliders {
                 if layers.interacts_with(others.copied().unwrap_or_default())
-                    && !near_set.contains(&entity)
-                    && let Some(collider) = motion.seen_from(self.frame, carried.as_ref())
+                    && !known.contains(&entity)
+                    && let Some(collider) = motion.seen_from(self.frame, carried)
                 {
                     numbered.push((near.len(), collider.clone()));
                     near.push((entity, collider));

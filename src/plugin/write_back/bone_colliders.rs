@@ -1,20 +1,12 @@
 //! Makes the colliders on the bones of characters.
 
 use bevy::{
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        entity::Entity,
-        entity_disabling::Disabled,
-        hierarchy::{ChildOf, Children},
-        lifecycle::Remove,
-        name::Name,
-        observer::On,
-        query::{Allow, Changed, Or},
-        system::{Commands, Query},
-    },
-    math::{Quat, Vec3},
+    ecs::entity_disabling::Disabled,
     platform::collections::HashMap,
-    transform::components::{GlobalTransform, Transform},
+    prelude::{
+        Allow, Changed, ChildOf, Children, Commands, DetectChanges, Entity, GlobalTransform, Name,
+        On, Or, Quat, Query, Ref, Remove, Transform, Vec3,
+    },
 };
 
 use crate::{

@@ -1,13 +1,6 @@
 //! Reports the faults of a tick.
 
-use bevy::{
-    ecs::{
-        entity::Entity,
-        query::{Changed, Without},
-        system::{Commands, Query},
-    },
-    log::error,
-};
+use bevy::prelude::{Changed, Commands, Entity, Query, Without, error};
 
 use crate::{
     cloth::{ClothError, ClothParticles},

@@ -1,13 +1,8 @@
 //! Reports cloths that leave the envelope in which they are simulated well.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashSet},
-        message::{Message, MessageWriter},
-        system::{Local, Query},
-    },
-    log::warn,
-    reflect::Reflect,
+    ecs::entity::EntityHashSet,
+    prelude::{Entity, Local, Message, MessageWriter, Query, Reflect, warn},
 };
 
 use crate::{

@@ -1,14 +1,6 @@
 //! Tears cloth that is loaded too much, and tells of tears.
 
-use bevy::{
-    ecs::{
-        change_detection::DetectChangesMut,
-        entity::Entity,
-        message::{Message, MessageWriter},
-        system::{Local, Query},
-    },
-    math::Vec3,
-};
+use bevy::prelude::{DetectChangesMut, Entity, Local, Message, MessageWriter, Query, Vec3};
 
 use crate::{
     cloth::{ClothMaterial, ClothParticles, ClothTearing, ClothTears, Strength, TearSearch},

@@ -1,13 +1,8 @@
 //! Sends a message when a cloth and a collider begin to touch, and when they no longer do.
 
-use bevy::ecs::{
-    entity::Entity,
-    entity_disabling::Disabled,
-    lifecycle::Discard,
-    message::MessageWriter,
-    observer::On,
-    query::Allow,
-    system::{Local, Query},
+use bevy::{
+    ecs::entity_disabling::Disabled,
+    prelude::{Allow, Discard, Entity, Local, MessageWriter, On, Query},
 };
 
 use crate::plugin::{

@@ -4,10 +4,8 @@ use std::mem::discriminant;
 
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticsStore},
-    ecs::{
-        change_detection::DetectChangesMut, entity::Entity, name::Name, query::QueryData,
-        system::Commands,
-    },
+    ecs::query::QueryData,
+    prelude::{Commands, DetectChangesMut, Entity, Name},
 };
 use bevy_egui::egui::{RichText, Ui};
 

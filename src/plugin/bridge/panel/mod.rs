@@ -9,22 +9,14 @@ mod row;
 mod tests;
 
 use bevy::{
-    app::{App, Plugin},
     camera::Viewport,
     diagnostic::DiagnosticsStore,
-    ecs::{
-        change_detection::DetectChangesMut,
-        component::Component,
-        entity::Entity,
-        error::Result,
-        name::Name,
-        reflect::{ReflectComponent, ReflectResource},
-        resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
+    ecs::system::SystemParam,
+    prelude::{
+        App, Commands, Component, DetectChangesMut, Entity, Fixed, Name, Plugin, Query, Reflect,
+        ReflectComponent, ReflectDefault, ReflectResource, Res, ResMut, Resource, Result, Time,
+        UVec2, Virtual,
     },
-    math::UVec2,
-    reflect::{Reflect, std_traits::ReflectDefault},
-    time::{Fixed, Time, Virtual},
 };
 use bevy_egui::{
     EguiContexts, EguiPlugin, EguiPrimaryContextPass,

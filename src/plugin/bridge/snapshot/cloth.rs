@@ -1,9 +1,8 @@
 //! The snapshot of a single cloth.
 
-use bevy::ecs::{
-    change_detection::{DetectChanges, DetectChangesMut, Ref},
-    entity::{Entity, MapEntities},
-    world::World,
+use bevy::{
+    ecs::entity::MapEntities,
+    prelude::{DetectChanges, DetectChangesMut, Entity, Ref, World},
 };
 
 use super::error::SnapshotError;

@@ -1,14 +1,9 @@
 //! The snapshot of all cloths and colliders of a world.
 
 use bevy::{
-    ecs::{
-        entity::{Entity, EntityHashSet, EntityMapper, MapEntities},
-        hierarchy::ChildOf,
-        query::With,
-        world::World,
-    },
-    math::{DVec3, Isometry3d, Quat, Vec3},
-    transform::components::Transform,
+    ecs::entity::{EntityHashSet, MapEntities},
+    math::DVec3,
+    prelude::{ChildOf, Entity, EntityMapper, Isometry3d, Quat, Transform, Vec3, With, World},
 };
 
 use super::{cloth::ClothSnapshot, error::SnapshotError};
@@ -172,18 +167,11 @@ impl ClothWorldSnapshot {
         for (entity, snapshot) in &self.cloths {
             snapshot.check(world, *entity)?;
         }
-        for (entity, _) in &self.colliders {
-            has::<ColliderMotion>(world, *entity, "ClothCollider")?;
-        }
-        for (entity, _) in &self.roots {
-            has::<RootMotion>(world, *entity, "ClothInertia")?;
-        }
-        for (entity, ..) in &self.seams {
-            has::<ClothSeam>(world, *entity, "ClothSeam")?;
-        }
-        for (entity, _) in &self.transforms {
-            has::<Transform>(world, *entity, "Transform")?;
-        }
+        have::<ColliderMotion>(world, firsts(&self.colliders), "ClothCollider")?;
+        have::<RootMotion>(world, firsts(&self.roots), "ClothInertia")?;
+        let seams = self.seams.iter().map(|(entity, ..)| *entity);
+        have::<ClothSeam>(world, seams, "ClothSeam")?;
+        have::<Transform>(world, firsts(&self.transforms), "Transform")?;
         for &(entity, (translation, rotation, scale)) in &self.transforms {
             // Marked as changed, so that the transform is read again.
             if let Some(mut place) = world.get_mut::<Transform>(entity) {
@@ -249,13 +237,15 @@ impl ClothWorldSnapshot {
 
 /// # Errors
 /// [`SnapshotError::Gone`] if an entity no longer has the component.
-fn has<C: bevy::ecs::component::Component>(
+fn have<C: bevy::ecs::component::Component>(
     world: &World,
-    entity: Entity,
+    mut entities: impl Iterator<Item = Entity>,
     component: &'static str,
 ) -> Result<(), SnapshotError> {
-    let known = world.get::<C>(entity).map(drop);
-    known.ok_or(SnapshotError::Gone { entity, component })
+    let gone = entities.find(|entity| world.get::<C>(*entity).is_none());
+    gone.map_or(Ok(()), |entity| {
+        Err(SnapshotError::Gone { entity, component })
+    })
 }
 
 fn firsts<T>(all: &[(Entity, T)]) -> impl Iterator<Item = Entity> + '_ {

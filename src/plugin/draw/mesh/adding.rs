@@ -1,14 +1,8 @@
 //! Gives cloths their meshes, and takes them away.
 
 use bevy::{
-    asset::Assets,
-    ecs::{
-        entity::Entity,
-        lifecycle::Remove,
-        observer::On,
-        system::{Commands, Query, ResMut},
-    },
-    mesh::{Mesh, Mesh3d, skinning::SkinnedMesh},
+    mesh::skinning::SkinnedMesh,
+    prelude::{Assets, Commands, Entity, Mesh, Mesh3d, On, Query, Remove, ResMut},
 };
 
 use super::{
@@ -24,7 +18,7 @@ use crate::{
 };
 
 /// Gives a mesh to each cloth that has none, or the mesh of another surface.
-pub(super) fn add_meshes(
+pub(in crate::plugin::draw) fn add_meshes(
     cloths: Query<(
         Entity,
         &Cloth,

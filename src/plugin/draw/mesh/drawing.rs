@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::{change_detection::Tick, component::Component, entity::Entity},
-    math::{Affine3A, Vec3},
-    mesh::Mesh,
+    ecs::change_detection::Tick,
+    math::Affine3A,
+    prelude::{Component, Entity, Mesh, Vec3},
 };
 
 use super::{

@@ -9,26 +9,16 @@ mod tube;
 mod write;
 
 use bevy::{
-    app::{
-        App, FixedFirst, FixedLast, FixedPostUpdate, FixedPreUpdate, FixedUpdate, Plugin,
-        PostUpdate,
+    asset::AssetEventSystems,
+    camera::visibility::VisibilitySystems,
+    ecs::{intern::Interned, query::QueryData, schedule::ScheduleLabel, system::SystemParam},
+    math::Affine3A,
+    prelude::{
+        App, Assets, DetectChanges, Entity, Fixed, FixedFirst, FixedLast, FixedPostUpdate,
+        FixedPreUpdate, FixedUpdate, GlobalTransform, InheritedVisibility, IntoScheduleConfigs,
+        Mesh, Plugin, PostUpdate, Query, Ref, Res, ResMut, Resource, Time, TransformSystems, Vec3,
+        resource_exists,
     },
-    asset::{AssetEventSystems, Assets},
-    camera::visibility::{InheritedVisibility, VisibilitySystems},
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        entity::Entity,
-        intern::Interned,
-        query::QueryData,
-        schedule::{
-            IntoScheduleConfigs, ScheduleLabel, SystemSet, common_conditions::resource_exists,
-        },
-        system::{Query, Res, ResMut, SystemParam},
-    },
-    math::{Affine3A, Vec3},
-    mesh::Mesh,
-    time::{Fixed, Time},
-    transform::{TransformSystems, components::GlobalTransform},
 };
 
 use crate::{
@@ -41,20 +31,16 @@ use crate::{
         state::{ClothBuilt, ClothScratch, ClothState, LodAction, Notices},
     },
 };
-use adding::{add_meshes, remove_mesh};
+use adding::remove_mesh;
 use placing::Drawn;
 
+pub(super) use adding::add_meshes;
 pub(crate) use drawing::MeshDrawing;
 pub(super) use write::{Vectors, with_triangles};
 
-/// The steps for the meshes in a frame.
-#[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum MeshSystems {
-    /// Gives a mesh to cloths without one.
-    Add,
-    /// Updates the meshes.
-    Write,
-}
+/// Whether meshes are drawn between two ticks. In a schedule that runs once a frame there is nothing to interpolate.
+#[derive(Resource)]
+pub(super) struct Interpolated(bool);
 
 /// Gives each cloth a mesh with UVs, normals and tangents that follows its particles. The mesh is updated once per
 /// rendered frame, interpolated between two ticks by `overstep_fraction`. Does nothing in an app without meshes.
@@ -77,15 +63,8 @@ impl Plugin for ClothMeshPlugin {
             FixedPostUpdate.intern(),
             FixedLast.intern(),
         ];
-        // In any other schedule a tick is a frame, and there is nothing to interpolate.
-        let interpolated = fixed.contains(&self.schedule);
-        let update = move |cloths: Query<_, _>,
-                           at: Surroundings,
-                           time: (Res<_>, Res<_>),
-                           meshes: ResMut<_>| {
-            update_meshes(cloths, at, time, meshes, interpolated);
-        };
         app.init_resource::<Notices>()
+            .insert_resource(Interpolated(fixed.contains(&self.schedule)))
             .register_type::<ClothMesh>()
             .register_type::<ClothSkeleton>()
             .add_observer(remove_mesh)
@@ -98,10 +77,7 @@ impl Plugin for ClothMeshPlugin {
             // Before the asset events, from which Bevy's culling takes the new bounds.
             .add_systems(
                 PostUpdate,
-                (
-                    add_meshes.in_set(MeshSystems::Add),
-                    update.in_set(MeshSystems::Write),
-                )
+                (add_meshes, update_meshes)
                     .chain()
                     .after(ClothSystems::WriteBack)
                     .after(TransformSystems::Propagate)
@@ -150,7 +126,7 @@ fn remember_positions(
 
 #[derive(QueryData)]
 #[query_data(mutable)]
-struct DrawQuery {
+pub(super) struct DrawQuery {
     entity: Entity,
     built: &'static ClothBuilt,
     particles: Ref<'static, ClothParticles>,
@@ -164,20 +140,20 @@ struct DrawQuery {
 
 /// Where things are drawn.
 #[derive(SystemParam)]
-struct Surroundings<'w, 's> {
+pub(super) struct Surroundings<'w, 's> {
     transforms: Query<'w, 's, &'static GlobalTransform>,
     skins: Skins<'w, 's>,
 }
 
-fn update_meshes(
+pub(super) fn update_meshes(
     mut cloths: Query<DrawQuery>,
     around: Surroundings,
     (fixed, time): (Res<Time<Fixed>>, Res<Time>),
     mut meshes: ResMut<Assets<Mesh>>,
-    interpolated: bool,
+    interpolated: Res<Interpolated>,
 ) {
     let overstep = fixed.overstep_fraction().min(1.0);
-    let fraction = if interpolated { overstep } else { 1.0 };
+    let fraction = if interpolated.0 { overstep } else { 1.0 };
     let seconds = time.elapsed_secs_f64();
     for mut cloth in &mut cloths {
         cloth.update(&around, &mut meshes, fraction, seconds);

@@ -7,9 +7,8 @@
 //! not tremble.
 
 use bevy::{
-    ecs::entity::Entity,
-    math::{Affine3A, Isometry3d, Vec3},
-    transform::components::GlobalTransform,
+    math::Affine3A,
+    prelude::{Entity, GlobalTransform, Isometry3d, Vec3},
 };
 
 use crate::{

@@ -5,9 +5,8 @@
 //! the renderer skins.
 
 use bevy::{
-    ecs::entity::Entity,
-    math::{Affine3A, Isometry3d, Vec3},
-    transform::components::GlobalTransform,
+    math::Affine3A,
+    prelude::{Entity, GlobalTransform, Isometry3d, Vec3},
 };
 
 use crate::plugin::{

@@ -4,11 +4,9 @@ use std::f32::consts::TAU;
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::{
-        Quat, Vec3,
-        cubic_splines::{CubicCardinalSpline, CubicGenerator},
-    },
-    mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues},
+    math::cubic_splines::{CubicCardinalSpline, CubicGenerator},
+    mesh::{Indices, PrimitiveTopology, VertexAttributeValues},
+    prelude::{Mesh, Quat, Vec3},
 };
 
 use crate::cloth::Surface;

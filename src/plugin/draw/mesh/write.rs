@@ -2,9 +2,9 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::{Vec2, Vec3},
-    mesh::{Indices, Mesh, MeshVertexAttributeId, PrimitiveTopology, VertexAttributeValues},
+    mesh::{Indices, MeshVertexAttributeId, PrimitiveTopology, VertexAttributeValues},
     platform::collections::HashMap,
+    prelude::{Mesh, Vec2, Vec3},
 };
 
 use super::tube;

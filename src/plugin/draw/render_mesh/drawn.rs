@@ -2,9 +2,9 @@
 
 use bevy::{
     asset::RenderAssetUsages,
-    math::{Affine3A, Vec3, Vec4},
-    mesh::{Mesh, VertexAttributeValues},
-    transform::components::GlobalTransform,
+    math::Affine3A,
+    mesh::VertexAttributeValues,
+    prelude::{GlobalTransform, Mesh, Vec3, Vec4},
 };
 
 use crate::{

@@ -5,27 +5,21 @@ mod drawn;
 use std::sync::Arc;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
-    asset::{AssetEvent, AssetEventSystems, AssetId, AssetServer, Assets, Handle},
-    camera::visibility::InheritedVisibility,
+    asset::AssetEventSystems,
     ecs::{
-        component::Component,
-        entity::{ComponentCloneCtx, Entity, MapEntities, SourceComponent},
-        lifecycle::Remove,
-        message::MessageReader,
-        observer::On,
-        query::{QueryData, With, Without},
-        reflect::{ReflectComponent, ReflectFromWorld, ReflectMapEntities},
-        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
-        system::{Commands, Local, Query, Res, ResMut},
-        world::{FromWorld, World},
+        entity::{ComponentCloneCtx, MapEntities, SourceComponent},
+        query::QueryData,
+        reflect::ReflectMapEntities,
     },
-    mesh::{Mesh, Mesh3d},
-    reflect::{Reflect, std_traits::ReflectDefault},
-    transform::components::GlobalTransform,
+    prelude::{
+        App, AssetEvent, AssetId, AssetServer, Assets, Commands, Component, Entity, FromWorld,
+        GlobalTransform, Handle, InheritedVisibility, IntoScheduleConfigs, Local, Mesh, Mesh3d,
+        MessageReader, On, Plugin, PostUpdate, Query, Reflect, ReflectComponent, ReflectDefault,
+        ReflectFromWorld, Remove, Res, ResMut, With, Without, World, resource_exists,
+    },
 };
 
-use super::mesh::{MeshDrawing, MeshSystems};
+use super::mesh::{MeshDrawing, add_meshes, update_meshes};
 use crate::{
     cloth::{Cloth, ClothError, MeshError, Surface, TargetError},
     plugin::{
@@ -138,10 +132,10 @@ impl Plugin for ClothRenderMeshPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    bind.after(MeshSystems::Add).before(MeshSystems::Write),
+                    bind.after(add_meshes).before(update_meshes),
                     update
                         .after(bind)
-                        .after(MeshSystems::Write)
+                        .after(update_meshes)
                         .before(AssetEventSystems),
                 )
                     .run_if(resource_exists::<Assets<Mesh>>),
@@ -321,14 +315,13 @@ fn remove_render_mesh(
     faults: Query<&ClothFault>,
     mut commands: Commands,
 ) {
-    if let Ok((state, drawn)) = states.get(removed.entity) {
-        let mut entity = commands.entity(removed.entity);
-        if drawn.is_some_and(|drawn| drawn.0 == state.handle) {
-            entity.try_insert(Mesh3d(state.source.clone()));
-        }
-        entity.try_remove::<RenderMeshState>();
+    let mut entity = commands.entity(removed.entity);
+    if let Ok((state, Some(drawn))) = states.get(removed.entity)
+        && drawn.0 == state.handle
+    {
+        entity.try_insert(Mesh3d(state.source.clone()));
     }
-    commands.entity(removed.entity).try_remove::<RefusedMesh>();
+    entity.try_remove::<(RenderMeshState, RefusedMesh)>();
     let known = faults.get(removed.entity).ok();
     let part = Part::RenderMesh;
     ClothFault::report(&mut commands, removed.entity, known, part, Ok(()));

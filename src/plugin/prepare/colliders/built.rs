@@ -1,9 +1,6 @@
 //! The shapes of colliders.
 
-use bevy::{
-    ecs::entity::Entity,
-    math::{Isometry3d, Vec3},
-};
+use bevy::prelude::{Entity, Isometry3d, Vec3};
 
 use super::skinned::SkinnedPose;
 use crate::{

@@ -1,16 +1,13 @@
 //! The colliders that are read in a tick.
 
-use bevy::ecs::{
-    entity::Entity,
-    entity_disabling::Disabled,
-    hierarchy::{ChildOf, Children},
-    lifecycle::{Remove, RemovedComponents},
-    observer::On,
-    query::{Allow, Changed, Or, With},
-    resource::Resource,
-    system::{Query, ResMut, SystemParam},
-};
 use bevy::transform::components::Transform;
+use bevy::{
+    ecs::{entity_disabling::Disabled, system::SystemParam},
+    prelude::{
+        Allow, Changed, ChildOf, Children, Entity, On, Or, Query, Remove, RemovedComponents,
+        ResMut, Resource, With,
+    },
+};
 
 use super::motion::ColliderMotion;
 use crate::{contact::ClothCollider, plugin::authoring::ClothBody};

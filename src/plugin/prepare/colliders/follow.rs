@@ -1,13 +1,6 @@
 //! Follows the colliders that move.
 
-use bevy::{
-    ecs::{
-        lifecycle::Remove,
-        observer::On,
-        system::{Commands, Local, Query, Res, ResMut},
-    },
-    time::Time,
-};
+use bevy::prelude::{Commands, Local, On, Query, Remove, Res, ResMut, Time};
 
 use super::{
     changes::{Awaited, Changes},

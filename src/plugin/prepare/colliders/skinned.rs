@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{
-    ecs::entity::Entity,
-    math::{Affine3A, Isometry3d, Mat3A},
+    math::Affine3A,
+    prelude::{Entity, Isometry3d, Mat3A},
 };
 
 use crate::{

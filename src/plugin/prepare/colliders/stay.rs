@@ -1,6 +1,6 @@
 //! How long a body has stayed where it is.
 
-use bevy::math::{Isometry3d, Vec3};
+use bevy::prelude::{Isometry3d, Vec3};
 
 use crate::plugin::frame::Shift;
 

@@ -1,9 +1,6 @@
 //! One tree over the bounds of all colliders, so that a cloth looks only at those around it.
 
-use bevy::{
-    ecs::{entity::Entity, resource::Resource},
-    math::{Mat3, Vec3},
-};
+use bevy::prelude::{Entity, Mat3, Resource, Vec3};
 use parry3d::{
     bounding_volume::Aabb,
     partitioning::{Bvh, BvhBuildStrategy, BvhLeafUpdateStatus, BvhNode, BvhWorkspace},
@@ -103,15 +100,9 @@ impl Bounds {
 
     /// A box as such, if it can be stored.
     fn checked(self) -> Self {
+        let is_near = |corner: &Vec3| corner.abs().max_element() < TREE_REACH && corner.is_finite();
         match self {
-            Self::Box(corners)
-                if corners
-                    .iter()
-                    .all(|c| c.is_finite() && c.abs().max_element() < TREE_REACH) =>
-            {
-                self
-            }
-            Self::Box(_) => Self::Unbounded,
+            Self::Box(corners) if !corners.iter().all(is_near) => Self::Unbounded,
             _ => self,
         }
     }

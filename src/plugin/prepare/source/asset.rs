@@ -1,14 +1,10 @@
 //! The meshes of cloths and colliders that are made from assets.
 
 use bevy::{
-    asset::{AssetId, AssetServer, Assets, LoadState},
-    ecs::{
-        entity::Entity,
-        resource::Resource,
-        system::{Query, Res, SystemParam},
-    },
-    mesh::{Mesh, Mesh3d},
+    asset::LoadState,
+    ecs::system::SystemParam,
     platform::collections::HashMap,
+    prelude::{AssetId, AssetServer, Assets, Entity, Mesh, Mesh3d, Query, Res, Resource},
 };
 
 use crate::{

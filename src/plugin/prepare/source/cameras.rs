@@ -1,13 +1,8 @@
 //! Places of cameras, and visibility.
 
 use bevy::{
-    camera::{Camera, visibility::InheritedVisibility},
-    ecs::{
-        entity::Entity,
-        system::{Query, SystemParam},
-    },
-    math::Vec3,
-    transform::components::GlobalTransform,
+    ecs::system::SystemParam,
+    prelude::{Camera, Entity, GlobalTransform, InheritedVisibility, Query, Vec3},
 };
 
 /// The cameras of the app.

@@ -3,16 +3,12 @@
 use std::sync::Arc;
 
 use bevy::{
-    asset::{AssetEvent, AssetId},
-    ecs::{
-        entity::Entity,
-        message::MessageReader,
-        resource::Resource,
-        system::{Local, Query, ResMut, SystemParam},
-    },
+    ecs::system::SystemParam,
     math::Affine3A,
-    mesh::{Mesh, Mesh3d},
     platform::collections::{HashMap, HashSet},
+    prelude::{
+        AssetEvent, AssetId, Entity, Local, Mesh, Mesh3d, MessageReader, Query, ResMut, Resource,
+    },
 };
 
 use super::{

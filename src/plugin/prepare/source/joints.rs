@@ -1,15 +1,11 @@
 //! Transforms of the joints of a skinned mesh.
 
 use bevy::{
-    asset::{AssetServer, Assets, Handle, LoadState},
-    ecs::{
-        entity::Entity,
-        query::AnyOf,
-        system::{Query, Res, SystemParam},
-    },
-    math::{Affine3A, Mat4},
+    asset::LoadState,
+    ecs::system::SystemParam,
+    math::Affine3A,
     mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    transform::components::GlobalTransform,
+    prelude::{AnyOf, AssetServer, Assets, Entity, GlobalTransform, Handle, Mat4, Query, Res},
 };
 
 use crate::{

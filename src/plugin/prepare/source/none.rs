@@ -3,9 +3,9 @@
 use std::{marker::PhantomData, sync::Arc};
 
 use bevy::{
-    ecs::{entity::Entity, system::SystemParam},
-    math::{Affine3A, Vec3},
-    transform::components::GlobalTransform,
+    ecs::system::SystemParam,
+    math::Affine3A,
+    prelude::{Entity, GlobalTransform, Vec3},
 };
 
 use crate::{

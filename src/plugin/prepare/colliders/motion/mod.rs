@@ -1,8 +1,8 @@
 //! How colliders move from tick to tick.
 
 use bevy::{
-    ecs::{component::Component, entity::Entity},
-    math::{Affine3A, Isometry3d, Quat, Vec3, Vec3A},
+    math::Affine3A,
+    prelude::{Component, Entity, Isometry3d, Quat, Vec3, Vec3A},
 };
 
 use super::{
@@ -114,14 +114,11 @@ impl ColliderMotion {
         let last = self.last.unwrap_or(place);
         let (from, pose) = (last * *offset, place * *offset);
         let translation = Vec3::from(pose.translation);
-        let turned = pose.rotation * from.rotation.inverse();
-        // Of the two quaternions of a rotation, the one of the shorter way round.
-        let turned = if turned.w < 0.0 { -turned } else { turned };
         let moving = MovingCollider {
             shape: shape.clone(),
             from,
             to: translation,
-            turn: turned.to_scaled_axis(),
+            turn: turn(from.rotation, pose.rotation),
             // Cloth does not move joints.
             body: match body.filter(|_| !is_skinned) {
                 Some(body) => {
@@ -319,13 +316,19 @@ impl ColliderMotion {
 /// A path that begins elsewhere: to a cloth that is carried along, a collider moves the opposite way.
 fn carried_along(moving: MovingCollider, from: Isometry3d) -> MovingCollider {
     let end = Quat::from_scaled_axis(moving.turn) * moving.from.rotation;
-    let turned = end * from.rotation.inverse();
-    let turned = if turned.w < 0.0 { -turned } else { turned };
     MovingCollider {
         from,
-        turn: turned.to_scaled_axis(),
+        turn: turn(from.rotation, end),
         ..moving
     }
+}
+
+/// The rotation vector (rad) from one rotation to another.
+fn turn(from: Quat, to: Quat) -> Vec3 {
+    let turned = to * from.inverse();
+    // Of the two quaternions of a rotation, the one of the shorter way round.
+    let turned = if turned.w < 0.0 { -turned } else { turned };
+    turned.to_scaled_axis()
 }
 
 #[cfg(test)]
