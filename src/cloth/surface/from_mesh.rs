@@ -17,8 +17,7 @@ use super::{
 };
 use crate::cloth::{
     arrays::{chosen, sorted},
-    limits::FARTHEST,
-    quantity::QuantityError,
+    quantity::Allowed,
     spring::SpringKind,
 };
 
@@ -55,28 +54,14 @@ impl Surface {
 }
 
 fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), MeshError> {
-    QuantityError::not_negative(weld, "weld distance (m)")?;
+    Allowed::SIZE.check("weld distance (m)", [weld])?;
     let particles = mesh.positions.len();
     // A particle usually has a few vertices; far too many are rejected before welding.
     if particles > 8 * MAX_MESH_PARTICLES {
         return Err(MeshError::TooLarge { particles });
     }
-    // Not by the largest element, which ignores NaN.
-    let is_far = |place: &Vec3| !(*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
-    if let Some(vertex) = mesh.positions.iter().position(is_far) {
-        let position = mesh.positions[vertex];
-        return Err(MeshError::VertexNotFinite { vertex, position });
-    }
-    let vertices = mesh.positions.len();
-    let is_beyond = |corners: &[u32; 3]| corners.iter().any(|at| *at as usize >= vertices);
-    if let Some(triangle) = mesh.triangles.iter().position(is_beyond) {
-        return Err(MeshError::TriangleOutOfRange {
-            triangle,
-            corners: mesh.triangles[triangle],
-            vertices,
-        });
-    }
-    Ok(())
+    MeshError::check_vertices(&mesh.positions, scale)?;
+    MeshError::check_triangles(&mesh.triangles, particles)
 }
 
 /// Welded vertices, on the way to a surface.

@@ -15,7 +15,7 @@ use super::{
     shape::ColliderShape,
     source::{SharedCollider, Source},
 };
-use crate::cloth::{ClothError, MeshError, QuantityError};
+use crate::cloth::{Allowed, ClothError, MeshError, QuantityError};
 
 /// A [`length`] that errors name as that `of` a shape.
 macro_rules! length {
@@ -237,10 +237,7 @@ impl ClothCollider {
         let across = sizes.x.max(sizes.z);
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
-            Self::Compound(ref parts) => {
-                let part = |(pose, of): &(Isometry3d, Self)| (*pose, of.offset(), of.scaled(scale));
-                compound::scaled(parts.iter().map(part), scale)
-            }
+            Self::Compound(ref parts) => compound::scaled(parts, scale),
             Self::Mesh(_) => Err(MeshError::NotLoaded.into()),
             Self::Cylinder {
                 radius,
@@ -271,12 +268,9 @@ impl ClothCollider {
                 half_length,
             } => {
                 let radius = length!("the capsule's", "radius (m)", radius, across)?;
-                let half_length = QuantityError::check(
-                    half_length * sizes.y,
-                    |v| v >= 0.0 && v.is_finite(),
-                    "half of the capsule's scaled length (m)",
-                    "zero or more",
-                )?;
+                let half_length = half_length * sizes.y;
+                let size = Allowed(|v| v >= 0.0 && v.is_finite(), "zero or more");
+                size.check("half of the capsule's scaled length (m)", [half_length])?;
                 Ok(ColliderShape::Capsule {
                     radius,
                     half_length,
@@ -302,9 +296,9 @@ impl ClothCollider {
 
 /// A length under a scale, checked before and after scaling. `names` are the names of both.
 fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, QuantityError> {
-    let positive = |v: f32| v > 0.0 && v.is_finite();
-    QuantityError::check(value, positive, names[0], "positive")?;
-    QuantityError::check(value * scale, positive, names[1], "positive")
+    Allowed::LENGTH.check(names[0], [value])?;
+    Allowed::LENGTH.check(names[1], [value * scale])?;
+    Ok(value * scale)
 }
 
 /// A convex shape of parry with a pose.
