@@ -125,7 +125,6 @@ mod query;
 mod ray;
 mod rule;
 mod scan;
-mod search_buffers;
 #[cfg(test)]
 mod tests;
 mod tree;

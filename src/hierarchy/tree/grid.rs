@@ -14,8 +14,8 @@ use crate::{
     cloth::{ClothParticles, Layout},
     hierarchy::{
         probe::Probe,
+        query::TopDownQuery,
         rule::BoundRule,
-        search_buffers::SearchBuffers,
         volume::{NodeVolume, Volume},
     },
 };
@@ -99,7 +99,7 @@ impl Tree for GridTree {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut SearchBuffers,
+        found: &mut TopDownQuery,
     ) {
         let reach = probe.reach() as f32;
         each!(volumes, bounds => match bounds.rule {
@@ -149,7 +149,7 @@ fn stored<V: Volume>(
 fn rebuild_paper<V: Volume>(bounds: &mut Bounds<V>, tree: &GridTree, particles: &ClothParticles) {
     bounds.nodes.clear();
     let longest = tree.layout.columns.max(tree.layout.rows) as f32;
-    let mut radius = (longest + 1.0) / 2.0 * tree.longest_spacing();
+    let mut radius = (longest + 1.0) / 2.0 * tree.spacing.max_element();
     for level in &tree.levels {
         for rows in &level.rows {
             for columns in &level.columns {
@@ -173,7 +173,7 @@ fn descend(
     tree: &GridTree,
     particles: &ClothParticles,
     probe: &Probe,
-    found: &mut SearchBuffers,
+    found: &mut TopDownQuery,
     touches: impl Fn(usize, [u32; 2], &Part, &Part) -> bool,
 ) {
     let [here, next] = &mut found.frontier;

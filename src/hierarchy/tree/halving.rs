@@ -63,7 +63,8 @@ pub struct GridTree {
     pub layout: Layout,
     /// Whether distances are also along the diagonals of cells.
     pub diagonals: bool,
-    spacing: Vec2,
+    /// Distances between neighbours (m).
+    pub spacing: Vec2,
 }
 
 impl GridTree {
@@ -128,11 +129,6 @@ impl GridTree {
             diagonals,
             spacing: grid.spacing(),
         }
-    }
-
-    /// The larger distance between neighbours (m).
-    pub fn longest_spacing(&self) -> f32 {
-        self.spacing.max_element()
     }
 
     /// The parts of a node of `level`.

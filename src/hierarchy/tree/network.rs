@@ -13,8 +13,8 @@ use crate::{
     cloth::{ClothParticles, Graph, Layout, ShortestPaths, Slot},
     hierarchy::{
         probe::Probe,
+        query::TopDownQuery,
         rule::BoundRule,
-        search_buffers::SearchBuffers,
         volume::{NodeVolume, Volume},
     },
 };
@@ -192,7 +192,7 @@ impl Tree for NetworkTree {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut SearchBuffers,
+        found: &mut TopDownQuery,
     ) {
         if self.nodes.is_empty() {
             return;

@@ -5,7 +5,7 @@ use std::{fmt::Debug, ops::Range};
 use super::{node::Node, stored::Volumes};
 use crate::{
     cloth::{ClothParticles, Layout},
-    hierarchy::{probe::Probe, rule::BoundRule, search_buffers::SearchBuffers, volume::NodeVolume},
+    hierarchy::{probe::Probe, query::TopDownQuery, rule::BoundRule, volume::NodeVolume},
 };
 
 /// A tree over a cloth's particles, built once for a surface.
@@ -43,6 +43,6 @@ pub(crate) trait Tree: Debug + Send + Sync {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut SearchBuffers,
+        found: &mut TopDownQuery,
     );
 }
