@@ -311,13 +311,6 @@ impl Frame {
         let turns = [b.cross(normal) / length, normal.cross(a) / length];
         normal.is_finite().then_some(Self { normal, turns })
     }
-
-    /// What turns the normal, for each direction (N). Beyond the moment it is that of a chain which lies on itself, and of no use.
-    fn levers(&self, difference: Vec3, moment: f32) -> [f32; 2] {
-        let most = moment.abs();
-        self.turns
-            .map_inline(|turn| (moment * difference.dot(turn)).clamp(-most, most))
-    }
 }
 
 /// The forces of a crease on its particles (N), along the normal where they are.
@@ -326,7 +319,10 @@ fn forces(places: [Vec3; 5], moment: f32, is_cell: bool) -> [Vec3; 5] {
     let Some(frame) = Frame::new(along) else {
         return [Vec3::ZERO; 5];
     };
-    let [a, b] = frame.levers(difference, moment);
+    // What turns the normal, for each direction. Beyond the moment it is that of a chain which lies on itself, and of no use.
+    let most = moment.abs();
+    let lever = |turn: Vec3| (moment * difference.dot(turn)).clamp(-most, most);
+    let [a, b] = frame.turns.map_inline(lever);
     let forces = match is_cell {
         true => [moment + a, b - moment, -b - moment, moment - a, 0.0],
         false => [moment + a, moment - a, -2.0 * moment, b, -b],

@@ -30,9 +30,7 @@ use super::{
     patch::frame,
     push::{LIMIT, largest_bound},
 };
-use crate::cloth::{
-    Block, DX, DY, DZ, LANES, Lanes, Layout, MapInline, StiffnessFactors, Surface, W, Woven,
-};
+use crate::cloth::{Block, DX, DY, DZ, LANES, Lanes, Layout, MapInline, Surface, W};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;
@@ -246,22 +244,6 @@ impl MeshBending {
             }
         }
         self.push_creases(1.0);
-    }
-
-    /// Lets it crease, or forgets its creases.
-    pub fn set_creasing(
-        &mut self,
-        surface: &Surface,
-        rigidity: Woven,
-        factors: &StiffnessFactors,
-        creases: bool,
-    ) {
-        if creases {
-            let new = || Box::new(MeshCreases::new(surface, rigidity, factors));
-            self.creases.get_or_insert_with(new);
-        } else {
-            self.creases = None;
-        }
     }
 
     /// `left` becomes s times the forces, 0 of pinned particles.

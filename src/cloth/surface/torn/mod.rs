@@ -25,8 +25,6 @@ mod split;
 mod springs;
 mod stencils;
 
-pub(crate) use stencils::GridStencil;
-
 use std::sync::{Arc, OnceLock};
 
 #[cfg(feature = "mesh")]
@@ -38,7 +36,7 @@ use bevy::{
 use thiserror::Error;
 
 use super::{
-    Derived, Extent, Faces, Surface, Torn,
+    Derived, Faces, Surface, Torn,
     incidence::Incidence,
     springs::{face_area, sides},
     triangles::VertexAttribute,
@@ -296,10 +294,7 @@ impl Torn {
                 ..Derived::default()
             },
         };
-        surface.extent = Extent {
-            pieces: surface.graph().pieces(),
-            ..whole.extent
-        };
+        surface.extent.pieces = surface.graph().pieces();
         surface.rest = surface.parted(&surface.rest, |particle| surface.origin_of(particle));
         surface
     }
