@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use bevy::math::Vec2;
 
+use super::shape::Outline;
 use crate::cloth::{ClothGrid, Layout};
 
 /// A range of rows or columns on one level.
@@ -59,10 +60,7 @@ impl Level {
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridTree {
     pub levels: Vec<Level>,
-    pub ranges: Vec<Range<u32>>,
-    pub layout: Layout,
-    /// Whether distances are also along the diagonals of cells.
-    pub diagonals: bool,
+    pub outline: Outline,
     /// Distances between neighbours (m).
     pub spacing: Vec2,
 }
@@ -123,19 +121,27 @@ impl GridTree {
         }
         let nodes = |level: &Level| level.first..level.index(level.rows.len() as u32, 0);
         Self {
-            ranges: levels.iter().map(nodes).collect(),
+            outline: Outline {
+                layout,
+                levels: levels.iter().map(nodes).collect(),
+                diagonals,
+                tops: vec![0],
+            },
             levels,
-            layout,
-            diagonals,
             spacing: grid.spacing(),
         }
     }
 
-    /// The parts of a node of `level`.
-    pub fn parts(&self, level: usize, node: u32) -> (u32, u32) {
-        let level = &self.levels[level];
-        let (index, columns) = (node - level.first, level.columns.len() as u32);
-        (index / columns, index % columns)
+    /// The parts of a node of `level`, after their places.
+    pub fn parts(&self, level: usize, node: u32) -> ([u32; 2], &Part, &Part) {
+        let Level { rows, columns, .. } = &self.levels[level];
+        let (index, width) = (node - self.levels[level].first, columns.len() as u32);
+        let [row, column] = [index / width, index % width];
+        (
+            [row, column],
+            &rows[row as usize],
+            &columns[column as usize],
+        )
     }
 }
 

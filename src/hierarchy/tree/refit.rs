@@ -82,7 +82,7 @@ impl<V: Volume> RefitLevels<V> {
             }
         }
         let (parts, width) = (at.parts_in_strip as usize, below.parts_in_strip as usize);
-        let strip = tree.layout.strip as usize;
+        let strip = tree.outline.layout.strip as usize;
         let end_of_level = self.first[level] + at.rows.len() * parts;
         let (here, rest) = self.lanes.split_at_mut(end_of_level);
         let out = &mut here[self.first[level] + row * parts..][..parts];
