@@ -4,7 +4,7 @@ use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::{
     AFTER_A_JUMP, ClothParticles, DensityFactors,
-    past::{Earlier, Past, StepKind},
+    past::{Earlier, StepKind},
     validity::is_valid,
 };
 use crate::cloth::{
@@ -154,16 +154,6 @@ impl ClothParticles {
     /// The blocks, and the particles' earlier displacements.
     pub(crate) fn blocks_and_past(&mut self) -> (&mut [Block], &mut [Earlier]) {
         (&mut self.blocks, &mut self.past.blocks)
-    }
-
-    /// The displacements before the last, block by block, if they are known.
-    pub(crate) fn known_past(&self) -> Option<&[Earlier]> {
-        self.past.known()
-    }
-
-    /// The history of the motion.
-    pub(crate) fn past_mut(&mut self) -> &mut Past {
-        &mut self.past
     }
 
     /// The order of the coming sub-step, if second order is enabled.

@@ -75,7 +75,8 @@ fn sew(
     part: impl Fn(f32) -> f32,
     stitches: &mut Vec<Stitch>,
 ) {
-    let [there, back] = first.aligned_from(second, places);
+    let there = first.align(second, places);
+    let back = there.inverse();
     let side = u32::from(second.particles.len() > first.particles.len());
     let (fine, coarse) = match side {
         0 => (first, second),

@@ -187,3 +187,13 @@ pub(crate) struct JointWeights {
     pub joints: [u16; 4],
     pub weights: [f32; 4],
 }
+
+impl JointWeights {
+    /// The joints with a weight, and those.
+    #[inline]
+    pub fn moving(&self) -> impl Iterator<Item = (usize, f32)> {
+        let each = self.joints.into_iter().zip(self.weights);
+        each.filter(|(_, weight)| *weight > 0.0)
+            .map(|(joint, weight)| (usize::from(joint), weight))
+    }
+}
