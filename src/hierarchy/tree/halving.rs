@@ -8,7 +8,7 @@ use super::shape::Outline;
 use crate::cloth::{ClothGrid, Layout};
 
 /// A range of rows or columns on one level.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 pub struct Part {
     /// The first, and one past the last.
     pub span: Range<u32>,
@@ -153,14 +153,10 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
         let middle = span.start + (span.end - span.start - 1) / 2;
         Part {
             half: span.end - 1 - middle,
-            is_short: 0,
             span,
             full_end: full.end,
             middle,
-            children: 0..0,
-            block: 0,
-            lane: 0,
-            in_strip: 0,
+            ..Part::default()
         }
     };
     let mut levels = vec![vec![part(0..full)]];
