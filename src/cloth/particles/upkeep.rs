@@ -171,8 +171,7 @@ impl ClothParticles {
             let gained = self.mean_gain();
             if gained != Vec3::ZERO {
                 for Slot { block, lane } in self.layout.slots() {
-                    let block = &mut self.blocks[block];
-                    block.set_displacement(lane, block.displacement(lane) + 0.5 * gained);
+                    self.blocks[block].displace(lane, 0.5 * gained);
                 }
             }
         }
@@ -197,8 +196,7 @@ impl ClothParticles {
 
     /// Adds `displacement` per sub-step (m) to a particle's motion, in the history too.
     pub(crate) fn accelerate(&mut self, slot: Slot, displacement: Vec3) {
-        let block = &mut self.blocks[slot.block];
-        block.set_displacement(slot.lane, block.displacement(slot.lane) + displacement);
+        self.blocks[slot.block].displace(slot.lane, displacement);
         self.past
             .change(slot.block, slot.lane, |moved| moved + displacement);
     }
@@ -271,8 +269,7 @@ impl ClothParticles {
 
     /// Copies `other` into the existing allocation.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.layout = other.layout;
-        self.blocks.clone_from(&other.blocks);
+        self.copy_places_from(other);
         self.substep = other.substep;
         self.past.copy_from(&other.past);
         self.loads.clone_from(&other.loads);

@@ -16,7 +16,7 @@ use super::{
     weld::same_places,
 };
 use crate::cloth::{
-    arrays::{chosen, sorted},
+    arrays::{chosen, distinct, sorted},
     quantity::Allowed,
     spring::SpringKind,
 };
@@ -146,9 +146,7 @@ impl Welded {
 
     /// Numbers the particles that are corners of a face, so that neighbours are near each other in memory.
     fn arrange(&mut self) {
-        let mut edges: Vec<[u32; 2]> = self.faces.iter().flat_map(|face| sides(*face)).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let edges = distinct(self.faces.iter().flat_map(|face| sides(*face)));
         let graph = Graph::new(self.rest.len(), edges.iter().map(|edge| (*edge, 1.0)));
         let mut order = graph.order();
         order.retain(|particle| !graph.of(*particle).is_empty());

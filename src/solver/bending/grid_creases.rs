@@ -13,7 +13,7 @@ use super::{
     creasing::{ClothCreasing, recall},
     plate::Plate,
 };
-use crate::cloth::{Block, ClothGrid, DX, DY, DZ, Layout, MapInline, Slot, W};
+use crate::cloth::{Block, ClothGrid, Layout, MapInline, Slot};
 
 /// What stencils are solved together, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,11 +157,8 @@ impl GridCreases {
         for crease in creases {
             for (particle, force) in crease.particles.iter().zip(&crease.forces) {
                 let Slot { block, lane } = self.slots[*particle as usize];
-                let view = blocks[block].view_mut();
-                let weight = weight * view[W + lane];
-                view[DX + lane] += weight * force.x;
-                view[DY + lane] += weight * force.y;
-                view[DZ + lane] += weight * force.z;
+                let block = &mut blocks[block];
+                block.displace(lane, weight * block.inverse_mass(lane) * *force);
             }
         }
     }

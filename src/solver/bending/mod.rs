@@ -109,7 +109,7 @@ impl Bending {
             None => {
                 let known = known.and_then(|(known, surface)| {
                     Some(KnownMatrix {
-                        matrix: known.of.mesh()?.matrix(),
+                        matrix: &known.of.mesh()?.matrix,
                         surface,
                         factors: &known.factors,
                     })
@@ -133,7 +133,7 @@ impl Bending {
     #[cfg(test)]
     pub(crate) fn matrix(&self) -> Option<*const f32> {
         let mesh = self.of.mesh()?;
-        Some(mesh.matrix().diagonal.as_ptr())
+        Some(mesh.matrix.diagonal.as_ptr())
     }
 
     /// In one of how many sub-steps of `dt` (s) it needs to bend, for all of them: their weights together leave it soft. For the

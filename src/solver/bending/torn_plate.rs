@@ -108,7 +108,7 @@ impl TornPlate {
             for (slot, part) in &moment.parts {
                 let block = &mut blocks[slot.block];
                 let pushed = -part * weight * block.inverse_mass(slot.lane) * moment.value;
-                block.set_displacement(slot.lane, block.displacement(slot.lane) + pushed);
+                block.displace(slot.lane, pushed);
             }
         }
     }

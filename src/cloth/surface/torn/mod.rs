@@ -41,7 +41,10 @@ use super::{
     springs::{face_area, sides},
     triangles::VertexAttribute,
 };
-use crate::cloth::{arrays::chosen, grid::ClothGrid};
+use crate::cloth::{
+    arrays::{chosen, distinct},
+    grid::ClothGrid,
+};
 
 /// The reason why a cloth can't be torn.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
@@ -309,10 +312,7 @@ impl Torn {
         let whole = &self.whole;
         let mut areas = whole.areas.clone();
         areas.resize(self.origin.len(), 0.0);
-        let mut split: Vec<u32> = edges.iter().flatten().copied().collect();
-        split.sort_unstable();
-        split.dedup();
-        for particle in split {
+        for particle in distinct(edges.iter().flatten().copied()) {
             areas[particle as usize] = 0.0;
             for &face in whole.incidence().around(particle) {
                 let corners = whole.triangles()[face as usize];
