@@ -107,8 +107,9 @@ impl RopePath {
     ///
     /// # Errors
     /// - [`MeshError::VertexNotFinite`] for the first point that, scaled, is not finite or is beyond 10¹² m.
-    /// - [`QuantityError`](crate::QuantityError) for fewer than two points.
-    /// - [`QuantityError`](crate::QuantityError) for a length, spacing or radius that is not positive and finite, or is too small or large once scaled.
+    /// - [`QuantityError`](crate::cloth::QuantityError) for fewer than two points.
+    /// - [`QuantityError`](crate::cloth::QuantityError) for a length, spacing or radius that is not positive and finite, or is too small
+    ///   or large once scaled.
     /// - [`GridError::TooLarge`] for too many particles.
     pub(super) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         let count = self.points.len() as f32;

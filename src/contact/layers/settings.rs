@@ -66,7 +66,8 @@ impl ClothSelfCollision {
     /// Checks all values against the surface of the cloth.
     ///
     /// # Errors
-    /// [`QuantityError`](crate::QuantityError) for a thickness that is not positive, or a friction that is negative or not finite;
+    /// [`QuantityError`](crate::cloth::QuantityError) for a thickness that is not positive, or a friction that is negative
+    /// or not finite;
     /// [`SelfCollisionError::TooThick`] for more than half of the shortest spacing.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         let thickness = self.thickness;

@@ -227,8 +227,8 @@ impl ClothCollider {
     /// capsule.
     ///
     /// # Errors
-    /// [`QuantityError`](crate::QuantityError) for a length that is zero, negative or not finite, before or after scaling; a capsule's
-    /// length may be zero. [`MeshError::NotLoaded`] for a mesh, because only the plugin can access the assets.
+    /// [`QuantityError`](crate::cloth::QuantityError) for a length that is zero, negative or not finite, before or after
+    /// scaling; a capsule's length may be zero. [`MeshError::NotLoaded`] for a mesh, because only the plugin can access the assets.
     /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let sizes = scale.abs();

@@ -56,7 +56,7 @@ impl ClothPressure {
     /// Checks that each value is in its range, and that `surface` encloses a volume.
     ///
     /// # Errors
-    /// [`QuantityError`](crate::QuantityError), and [`MeshError::NotClosed`].
+    /// [`QuantityError`](crate::cloth::QuantityError), and [`MeshError::NotClosed`].
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         match *self {
             Self::Gauge(pressure) => {
