@@ -125,6 +125,7 @@ mod query;
 mod ray;
 mod rule;
 mod scan;
+mod search_buffers;
 #[cfg(test)]
 mod tests;
 mod tree;

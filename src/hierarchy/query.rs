@@ -4,7 +4,9 @@ use std::ops::Range;
 
 use bevy::reflect::Reflect;
 
-use super::{bounds::NodeBounds, probe::Probe, scan::scan, tree::QuadTree};
+use super::{
+    bounds::NodeBounds, probe::Probe, scan::scan, search_buffers::SearchBuffers, tree::QuadTree,
+};
 use crate::cloth::ClothParticles;
 
 /// The result of the last search for a node.
@@ -25,23 +27,20 @@ pub enum NodeState {
 #[derive(Reflect, Debug, Default, Clone, PartialEq)]
 #[type_path = "bevy_drape"]
 pub struct TopDownQuery {
-    /// Nodes in the order of the tests, and whether they touched.
-    pub(super) visits: Vec<(u32, bool)>,
-    /// Whether nobody reads the visits and the number of leaf tests, so that they need not be kept.
-    pub(super) is_silent: bool,
-    /// Children of touching nodes on the current level, and on the next: their ranges of rows and of columns. For
-    /// stored nodes, their range of indices.
-    pub(super) frontier: [Vec<[u32; 4]>; 2],
-    pub(super) candidates: Vec<u32>,
-    pub(super) leaf_tests: usize,
+    found: SearchBuffers,
 }
 
 impl TopDownQuery {
     /// Clears the results.
     pub fn clear(&mut self) {
-        self.visits.clear();
-        self.candidates.clear();
-        self.leaf_tests = 0;
+        self.found.visits.clear();
+        self.found.candidates.clear();
+        self.found.leaf_tests = 0;
+    }
+
+    /// Keeps no [`visits`](Self::visits) from now on, where nobody reads them.
+    pub(crate) fn silence(&mut self) {
+        self.found.is_silent = true;
     }
 
     /// Searches for `probe`, and appends to the results since [`clear`](Self::clear). Returns the range of the probe's
@@ -53,37 +52,38 @@ impl TopDownQuery {
         particles: &ClothParticles,
         probe: &Probe,
     ) -> Range<usize> {
-        let first = self.candidates.len();
+        let first = self.found.candidates.len();
         if tree.matches(particles) && bounds.matches(tree) {
-            tree.shape().search(&bounds.volumes, particles, probe, self);
+            tree.shape()
+                .search(&bounds.volumes, particles, probe, &mut self.found);
         }
-        first..self.candidates.len()
+        first..self.found.candidates.len()
     }
 
     /// Tests every particle instead, eight at a time: for cloths too small for a tree.
     pub fn scan(&mut self, particles: &ClothParticles, probe: &Probe) -> Range<usize> {
-        let first = self.candidates.len();
+        let first = self.found.candidates.len();
         let (blocks, layout) = (particles.blocks(), particles.layout());
-        scan(blocks, layout, probe, &mut self.candidates);
-        self.leaf_tests += particles.len();
-        first..self.candidates.len()
+        scan(blocks, layout, probe, &mut self.found.candidates);
+        self.found.leaf_tests += particles.len();
+        first..self.found.candidates.len()
     }
 
     /// Particles that the probes meet, in the order of the searches.
     pub fn candidates(&self) -> &[u32] {
-        &self.candidates
+        &self.found.candidates
     }
 
     /// Tested nodes in the order of the tests, once for each search, and whether they touched.
     pub fn visits(&self) -> &[(u32, bool)] {
-        &self.visits
+        &self.found.visits
     }
 
     /// Writes the state of each node of the tree to `states`. A node that any collider touches is `Touching`.
     pub fn states_into(&self, tree: &QuadTree, states: &mut Vec<NodeState>) {
         states.clear();
         states.resize(tree.len(), NodeState::Unvisited);
-        for &(node, touching) in &self.visits {
+        for &(node, touching) in &self.found.visits {
             if let Some(state) = states.get_mut(node as usize) {
                 if touching {
                     *state = NodeState::Touching;
@@ -104,7 +104,7 @@ impl TopDownQuery {
     /// Number of tested nodes of `level`, once for each search, and number of those that touched.
     pub fn level(&self, tree: &QuadTree, level: usize) -> (usize, usize) {
         let nodes = tree.levels().get(level).cloned().unwrap_or_default();
-        let visits = self.visits.iter();
+        let visits = self.found.visits.iter();
         let on_it = visits.filter(|(node, _)| nodes.contains(node));
         let touching = on_it.clone().filter(|(_, touching)| *touching);
         (on_it.count(), touching.count())
@@ -112,11 +112,11 @@ impl TopDownQuery {
 
     /// Number of nodes tested since [`clear`](Self::clear), including leaves, once for each search.
     pub fn nodes_visited(&self) -> usize {
-        self.visits.len()
+        self.found.visits.len()
     }
 
     /// Number of particles tested: tested leaves, and all particles of a scan.
     pub fn leaf_tests(&self) -> usize {
-        self.leaf_tests
+        self.found.leaf_tests
     }
 }

@@ -70,7 +70,7 @@ impl RayQuery {
         let rebuilt = (self.bounds).rebuild(spheres, tree, particles, stretch);
         rebuilt.ok()?;
         self.query.clear();
-        self.query.is_silent = true;
+        self.query.silence();
         let probe = Probe {
             core: Core::Segment(ends.map_inline(|distance| ray.get_point(distance))),
             radius: reach,

@@ -4,16 +4,16 @@ use bevy::math::Vec3;
 
 use super::{
     halving::{GridTree, Part},
-    node::Node,
-    shape::{Outline, Tree},
+    node::{Node, Outline},
+    shape::Tree,
     stored::{Bounds, Volumes, each},
 };
 use crate::{
     cloth::ClothParticles,
     hierarchy::{
         probe::Probe,
-        query::TopDownQuery,
         rule::BoundRule,
+        search_buffers::SearchBuffers,
         volume::{NodeVolume, Volume},
     },
 };
@@ -71,7 +71,7 @@ impl Tree for GridTree {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut TopDownQuery,
+        found: &mut SearchBuffers,
     ) {
         let reach = probe.reach() as f32;
         each!(volumes, bounds => match bounds.rule {
@@ -145,7 +145,7 @@ fn descend(
     tree: &GridTree,
     particles: &ClothParticles,
     probe: &Probe,
-    found: &mut TopDownQuery,
+    found: &mut SearchBuffers,
     touches: impl Fn(usize, [u32; 2], &Part, &Part) -> bool,
 ) {
     let [here, next] = &mut found.frontier;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy::math::Vec2;
 
-use super::shape::Outline;
+use super::node::Outline;
 use crate::cloth::{ClothGrid, Layout};
 
 /// A range of rows or columns on one level.

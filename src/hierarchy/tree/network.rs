@@ -5,16 +5,16 @@ use std::ops::Range;
 use bevy::math::{DVec3, Vec3};
 
 use super::{
-    node::Node,
-    shape::{Outline, Tree},
+    node::{Node, Outline},
+    shape::Tree,
     stored::{Bounds, Volumes, each},
 };
 use crate::{
     cloth::{ClothParticles, Graph, Layout, ShortestPaths, Slot},
     hierarchy::{
         probe::Probe,
-        query::TopDownQuery,
         rule::BoundRule,
+        search_buffers::SearchBuffers,
         volume::{NodeVolume, Volume},
     },
 };
@@ -162,7 +162,7 @@ impl Tree for NetworkTree {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut TopDownQuery,
+        found: &mut SearchBuffers,
     ) {
         if self.nodes.is_empty() {
             return;

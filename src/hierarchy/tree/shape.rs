@@ -1,25 +1,15 @@
 //! The interface of all trees.
 
-use std::{fmt::Debug, ops::Range};
+use std::fmt::Debug;
 
-use super::{node::Node, stored::Volumes};
-use crate::{
-    cloth::{ClothParticles, Layout},
-    hierarchy::{probe::Probe, query::TopDownQuery, volume::NodeVolume},
+use super::{
+    node::{Node, Outline},
+    stored::Volumes,
 };
-
-/// Facts about a tree.
-#[derive(Debug, Default, Clone, PartialEq)]
-pub struct Outline {
-    /// The layout of its particles.
-    pub layout: Layout,
-    /// The nodes of each level, the root's first.
-    pub levels: Vec<Range<u32>>,
-    /// Whether distances are also along the diagonals of a grid's cells.
-    pub diagonals: bool,
-    /// Nodes that together contain all particles: the root, unless no path leads from it to all of them.
-    pub tops: Vec<u32>,
-}
+use crate::{
+    cloth::ClothParticles,
+    hierarchy::{probe::Probe, search_buffers::SearchBuffers, volume::NodeVolume},
+};
 
 /// A tree over a cloth's particles, built once for a surface.
 pub(crate) trait Tree: Debug + Send + Sync {
@@ -40,6 +30,6 @@ pub(crate) trait Tree: Debug + Send + Sync {
         volumes: &Volumes,
         particles: &ClothParticles,
         probe: &Probe,
-        found: &mut TopDownQuery,
+        found: &mut SearchBuffers,
     );
 }

@@ -3,7 +3,6 @@
 use bevy::math::{Isometry3d, Vec3};
 use parry3d::{math::Pose, shape::SharedShape};
 
-use super::ClothCollider;
 use crate::{
     cloth::{ClothError, FARTHEST, MeshError, ShapeError},
     contact::colliders::{
@@ -13,12 +12,15 @@ use crate::{
     },
 };
 
+/// A part: its pose, that of its shape's frame within, and its shape under the scale.
+type Part = (Isometry3d, Isometry3d, Result<ColliderShape, ClothError>);
+
 /// The shape of several parts under a scale.
 ///
 /// # Errors
 /// The error of a part, or of its pose.
 pub(super) fn scaled(
-    children: &[(Isometry3d, ClothCollider)],
+    children: impl ExactSizeIterator<Item = Part>,
     scale: Vec3,
 ) -> Result<ColliderShape, ClothError> {
     check_scale(scale)?;
@@ -27,14 +29,13 @@ pub(super) fn scaled(
             shape: shape.to_string(),
         }))
     };
-    if children.is_empty() {
+    if children.len() == 0 {
         return no_such("an empty compound");
     }
     let is_even = scale.abs_diff_eq(Vec3::splat(scale.x), 1.0e-5 * scale.length());
     let mut parts = Parts::default();
-    for (part, (pose, child)) in children.iter().enumerate() {
-        let pose = part_pose(part, *pose)?;
-        let shape = child.scaled(scale);
+    for (part, (pose, offset, shape)) in children.enumerate() {
+        let pose = part_pose(part, pose)?;
         if shape == Err(MeshError::NotLoaded.into()) {
             return no_such("the entity's `Mesh3d` as a part of a compound");
         }
@@ -43,7 +44,7 @@ pub(super) fn scaled(
             return Err(ShapeError::SkewedPart { scale }.into());
         }
         let place = Vec3::from(pose.translation) * scale;
-        let pose = Isometry3d::new(place, pose.rotation) * child.offset();
+        let pose = Isometry3d::new(place, pose.rotation) * offset;
         let pose = Pose::from_parts(pose.translation.into(), pose.rotation);
         match shape? {
             ColliderShape::Geometry(geometry) => parts.add_parts(pose, geometry.parts()),

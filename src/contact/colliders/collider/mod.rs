@@ -236,7 +236,10 @@ impl ClothCollider {
         let across = sizes.x.max(sizes.z);
         match *self {
             Self::Shared(ref shared) => shared.scaled(scale),
-            Self::Compound(ref parts) => compound::scaled(parts, scale),
+            Self::Compound(ref parts) => {
+                let part = |(pose, of): &(Isometry3d, Self)| (*pose, of.offset(), of.scaled(scale));
+                compound::scaled(parts.iter().map(part), scale)
+            }
             Self::Mesh(_) => Err(MeshError::NotLoaded.into()),
             Self::Cylinder {
                 radius,
