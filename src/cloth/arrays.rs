@@ -33,6 +33,14 @@ pub(crate) fn sorted<const N: usize>(mut of: [u32; N]) -> [u32; N] {
     of
 }
 
+/// Each of some items once, in ascending order.
+pub(super) fn distinct<T: Ord>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut all: Vec<T> = items.into_iter().collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
 /// The values with these indices.
 pub(super) fn chosen<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
     indices.iter().map(|at| values[*at as usize]).collect()

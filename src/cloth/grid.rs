@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::{
     limits::{FARTHEST, MAX_PARTICLES},
-    quantity::QuantityError,
+    quantity::{Allowed, QuantityError},
 };
 
 /// The plane of a [`Cloth`](crate::cloth::Cloth) at rest, in its entity's frame.
@@ -57,8 +57,7 @@ impl GridShape {
         if columns < 2 || rows < 2 {
             return Err(GridError::TooSmall { columns, rows });
         }
-        let name = "spacing (m)";
-        QuantityError::check(self.spacing, |s| s > 0.0 && s.is_finite(), name, "positive")?;
+        Allowed::LENGTH.check("spacing (m)", [self.spacing])?;
         let (axes, along) = match self.plane {
             ClothPlane::Hanging => ([Vec3::X, Vec3::NEG_Y], scale.truncate()),
             ClothPlane::Lying => ([Vec3::X, Vec3::Z], scale.xz()),

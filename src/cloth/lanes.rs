@@ -139,6 +139,12 @@ impl Block {
         [self.0[DX + lane], self.0[DY + lane], self.0[DZ + lane]] = displacement.to_array();
     }
 
+    /// Adds to a displacement (m).
+    #[inline]
+    pub fn displace(&mut self, lane: usize, by: Vec3) {
+        self.set_displacement(lane, self.displacement(lane) + by);
+    }
+
     #[inline]
     pub fn set_inverse_mass(&mut self, lane: usize, inverse_mass: f32) {
         self.0[W + lane] = inverse_mass;

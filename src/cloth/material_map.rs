@@ -11,7 +11,7 @@ use super::{
     LANES, Lanes,
     material::ClothMaterial,
     particles::DensityFactors,
-    quantity::QuantityError,
+    quantity::Allowed,
     skin::{ClothPaint, PaintError},
     springs::StiffnessFactors,
     surface::Surface,
@@ -110,23 +110,18 @@ impl ClothFactor {
         &self,
         surface: &Surface,
         quantity: &'static str,
-        (range, is_in_range): Range,
+        range: Allowed,
     ) -> Result<Vec<f32>, PaintError> {
         if self.is_one() {
             return Ok(Vec::new());
         }
         let mut factors = self.paint.values(surface, quantity)?;
-        QuantityError::check(self.base, |base| base >= 0.0, quantity, "zero or more")?;
-        for factor in &mut factors {
-            *factor += self.base;
-            QuantityError::check(*factor, is_in_range, quantity, range)?;
-        }
+        Allowed(|base| base >= 0.0, "zero or more").check(quantity, [self.base])?;
+        factors.iter_mut().for_each(|factor| *factor += self.base);
+        range.check(quantity, factors.iter().copied())?;
         Ok(factors)
     }
 }
-
-/// A range of factors in words, and whether one is in it.
-type Range = (&'static str, fn(f32) -> bool);
 
 impl ClothMaterialMap {
     /// Whether it changes how a material stretches or bends.
@@ -141,17 +136,16 @@ impl ClothMaterialMap {
     /// [`PaintError::Quantity`] for the first that is out of its range; [`PaintError::NoSuchChannel`];
     /// [`PaintError::Count`].
     pub(crate) fn factors(&self, surface: &Surface) -> Result<MaterialFactors, PaintError> {
-        let positive: Range = ("positive and finite", |of| of > 0.0 && of.is_finite());
-        let or_zero: Range = ("zero or more, and finite", |of| of >= 0.0 && of.is_finite());
+        let (positive, or_zero) = (Allowed::POSITIVE, Allowed::SIZE);
         // All springs of a rope share one compliance, and it never has the surface of a mesh.
         let is_rope = surface.rope_radius().is_some();
-        let one: Range = ("1 on a rope", |of| of == 1.0);
+        let one = Allowed(|of| of == 1.0, "1 on a rope");
         let [of_stretch, of_bending] = [positive, or_zero].map(|of| if is_rope { one } else { of });
         let density = (self.density).values(surface, "factor of the density", positive)?;
         let stretch = (self.stretch).values(surface, "factor of the stiffness", of_stretch)?;
         let bending = (self.bending).values(surface, "factor of the rigidity", of_bending)?;
         let friction = (self.friction).values(surface, "factor of the friction", or_zero)?;
-        let thinner: Range = ("from 0.1 to 1", |of| (0.1..=1.0).contains(&of));
+        let thinner = Allowed(|of| (0.1..=1.0).contains(&of), "from 0.1 to 1");
         let thickness = (self.thickness).values(surface, "factor of the thickness", thinner)?;
         Ok(MaterialFactors {
             density: DensityFactors::new(density, surface),

@@ -20,34 +20,6 @@ pub struct QuantityError {
     pub value: f32,
 }
 
-impl QuantityError {
-    /// `value` if it holds to `test`, else the error that names it.
-    pub(crate) fn check(
-        value: f32,
-        test: fn(f32) -> bool,
-        quantity: &'static str,
-        expected: &'static str,
-    ) -> Result<f32, Self> {
-        test(value).then_some(value).ok_or(Self {
-            quantity,
-            expected,
-            value,
-        })
-    }
-
-    /// `value` if it is positive and finite.
-    pub(crate) fn positive(value: f32, quantity: &'static str) -> Result<f32, Self> {
-        let Allowed(test, expected) = Allowed::POSITIVE;
-        Self::check(value, test, quantity, expected)
-    }
-
-    /// `value` if it is finite and not negative.
-    pub(crate) fn not_negative(value: f32, quantity: &'static str) -> Result<f32, Self> {
-        let Allowed(test, expected) = Allowed::SIZE;
-        Self::check(value, test, quantity, expected)
-    }
-}
-
 /// The values that a quantity may have, by a test and in words.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Allowed(pub fn(f32) -> bool, pub &'static str);
@@ -55,6 +27,8 @@ pub(crate) struct Allowed(pub fn(f32) -> bool, pub &'static str);
 impl Allowed {
     pub const FINITE: Self = Self(f32::is_finite, "finite");
     pub const POSITIVE: Self = Self(|v| v > 0.0 && v.is_finite(), "positive and finite");
+    /// The same, in the words for a length.
+    pub const LENGTH: Self = Self(|v| v > 0.0 && v.is_finite(), "positive");
     pub const SIZE: Self = Self(|v| v >= 0.0 && v.is_finite(), "zero or more, and finite");
     pub const SHARE: Self = Self(|v| (0.0..=1.0).contains(&v), "from 0 to 1");
 
@@ -68,7 +42,13 @@ impl Allowed {
         values: impl IntoIterator<Item = f32>,
     ) -> Result<(), QuantityError> {
         let Self(test, expected) = self;
-        let check = |value| QuantityError::check(value, test, quantity, expected).map(drop);
-        values.into_iter().try_for_each(check)
+        let wrong = values.into_iter().find(|value| !test(*value));
+        wrong.map_or(Ok(()), |value| {
+            Err(QuantityError {
+                quantity,
+                expected,
+                value,
+            })
+        })
     }
 }

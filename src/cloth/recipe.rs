@@ -14,7 +14,7 @@ use super::{
     particles::ClothParticles,
     pins::Pins,
     presence::log_unsimulated,
-    quantity::QuantityError,
+    quantity::{Allowed, QuantityError},
     rope::{RopePath, RopeShape},
     surface::{Surface, TriangleMesh},
 };
@@ -363,10 +363,8 @@ impl Cloth {
     /// # Errors
     /// [`QuantityError`] for an unevenness out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        let range = |u: f32| (0.0..=0.1).contains(&u);
-        let name = "unevenness (spacings)";
-        QuantityError::check(self.unevenness, range, name, "from 0 to 0.1")?;
-        Ok(())
+        let range = Allowed(|u| (0.0..=0.1).contains(&u), "from 0 to 0.1");
+        range.check("unevenness (spacings)", [self.unevenness])
     }
 }
 

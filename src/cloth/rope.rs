@@ -8,8 +8,8 @@ use bevy::{
 use super::{
     error::ClothError,
     grid::{ClothGrid, ClothPlane, GridError, mean},
-    limits::{FARTHEST, MAX_PARTICLES},
-    quantity::QuantityError,
+    limits::MAX_PARTICLES,
+    quantity::Allowed,
     surface::{MeshError, Surface},
 };
 
@@ -54,9 +54,9 @@ impl RopeShape {
     /// 10⁻⁹ m, or makes the rope longer than 10¹² m. [`GridError::TooLarge`] for too many particles.
     pub fn scaled(&self, scale: Vec3) -> Result<ClothGrid, GridError> {
         let count = self.particles as f32;
-        QuantityError::check(count, |n| n >= 2.0, "particles of a rope", "at least 2")?;
-        QuantityError::positive(self.spacing, "spacing of a rope (m)")?;
-        QuantityError::positive(self.radius, "radius of a rope (m)")?;
+        AT_LEAST_TWO.check("particles of a rope", [count])?;
+        Allowed::POSITIVE.check("spacing of a rope (m)", [self.spacing])?;
+        Allowed::POSITIVE.check("radius of a rope (m)", [self.radius])?;
         let (axes, along) = match self.plane {
             ClothPlane::Hanging => ([Vec3::NEG_Y, Vec3::NEG_X], scale.y),
             ClothPlane::Lying => ([Vec3::X, Vec3::Z], scale.x),
@@ -65,6 +65,9 @@ impl RopeShape {
         ClothGrid::new([self.particles, 1], spacing, axes, scale, self.centred)
     }
 }
+
+/// Of particles or points of a rope.
+const AT_LEAST_TWO: Allowed = Allowed(|count| count >= 2.0, "at least 2");
 
 /// The spacing across the single row of a rope's grid: that is a border, and borders are half a spacing wide (m).
 fn width(radius: f32, scale: Vec3) -> f32 {
@@ -104,23 +107,19 @@ impl RopePath {
     ///
     /// # Errors
     /// - [`MeshError::VertexNotFinite`] for the first point that, scaled, is not finite or is beyond 10¹² m.
-    /// - [`QuantityError`] for fewer than two points.
-    /// - [`QuantityError`] for a length, spacing or radius that is not positive and finite, or is too small or large once scaled.
+    /// - [`QuantityError`](crate::cloth::QuantityError) for fewer than two points.
+    /// - [`QuantityError`](crate::cloth::QuantityError) for a length, spacing or radius that is not positive and finite, or is too small
+    ///   or large once scaled.
     /// - [`GridError::TooLarge`] for too many particles.
     pub(super) fn surface(&self, scale: Vec3) -> Result<Surface, ClothError> {
         let count = self.points.len() as f32;
-        QuantityError::check(count, |n| n >= 2.0, "points of a rope's path", "at least 2")?;
+        AT_LEAST_TWO.check("points of a rope's path", [count])?;
         let points: Vec<Vec3> = self.points.iter().map(|point| scale * *point).collect();
-        // Not so for NaN.
-        let is_near = |point: &Vec3| point.abs().max_element() < FARTHEST && point.is_finite();
-        if let Some(vertex) = points.iter().position(|point| !is_near(point)) {
-            let position = points[vertex];
-            return Err(MeshError::VertexNotFinite { vertex, position }.into());
-        }
+        MeshError::check_vertices(&points, Vec3::ONE)?;
         let unscaled = along(&self.points).1;
-        QuantityError::positive(self.spacing, "spacing of a rope (m)")?;
-        QuantityError::positive(self.radius, "radius of a rope (m)")?;
-        QuantityError::positive(unscaled, "length of a rope's path (m)")?;
+        Allowed::POSITIVE.check("spacing of a rope (m)", [self.spacing])?;
+        Allowed::POSITIVE.check("radius of a rope (m)", [self.radius])?;
+        Allowed::POSITIVE.check("length of a rope's path (m)", [unscaled])?;
         let parts = (unscaled / self.spacing).round();
         let parts = parts.clamp(1.0, MAX_PARTICLES as f32) as u32;
         let (reached, length) = along(&points);

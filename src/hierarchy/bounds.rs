@@ -4,7 +4,7 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 use super::{
     rule::BoundRule,
-    tree::{QuadTree, Volumes, each},
+    tree::{QuadTree, Volumes, each, growth},
     volume::{BoundingVolume, NodeVolume},
 };
 use crate::cloth::{BoundsError, ClothParticles};
@@ -38,8 +38,11 @@ impl NodeBounds {
             self.volumes = Volumes::of(volume);
         }
         self.size = tree.size();
-        let shape = tree.shape();
-        shape.rebuild(&mut self.volumes, rule, particles, stretch);
+        each!(&mut self.volumes, bounds => {
+            bounds.rule = rule;
+            bounds.growth = growth(stretch);
+        });
+        tree.shape().rebuild(&mut self.volumes, particles);
         Ok(())
     }
 

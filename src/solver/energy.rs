@@ -32,9 +32,9 @@ impl Energy {
     /// As a tick in sub-steps of `dt` (s) begins, if it is one of the first after a change to shorter ones.
     pub fn watched(particles: &mut ClothParticles, dt: f32, acceleration: Vec3) -> Option<Self> {
         if dt < particles.substep() {
-            particles.past_mut().watch(WATCHED_TICKS);
+            particles.past.watch(WATCHED_TICKS);
         }
-        let lost = particles.past_mut().next_watched()?;
+        let lost = particles.past.next_watched()?;
         Some(Self {
             lost,
             ..Self::of(particles, acceleration)
@@ -46,7 +46,7 @@ impl Energy {
         let (mut mass, mut momentum) = (0.0, DVec3::ZERO);
         let (mut kinetic, mut potential) = (0.0, 0.0);
         let (mut free, acceleration) = (0, acceleration.as_dvec3());
-        let earlier = particles.known_past();
+        let earlier = particles.past.known();
         for (index, block) in particles.blocks().iter().enumerate() {
             let view = block.view();
             for lane in 0..LANES {
@@ -85,7 +85,7 @@ impl Energy {
     pub fn limit(self, particles: &mut ClothParticles, acceleration: Vec3) {
         let now = Self::of(particles, acceleration);
         if now.total - self.total > RETURNING * now.inner {
-            particles.past_mut().watch(WATCHED_TICKS);
+            particles.past.watch(WATCHED_TICKS);
         }
         let excess = now.total - self.total - self.lost;
         // NaN stays for those who look for it.
@@ -93,7 +93,7 @@ impl Energy {
             let kept = (1.0 - excess / now.inner).max(0.0).sqrt();
             slow_down(particles, kept as f32, now.is_free);
         }
-        particles.past_mut().set_lost((-excess).max(0.0));
+        particles.past.set_lost((-excess).max(0.0));
     }
 }
 
@@ -190,7 +190,7 @@ mod tests {
                 ..now
             };
             before(lost).limit(&mut particles, GRAVITY);
-            assert_eq!(particles.past_mut().lost(), 0.0);
+            assert_eq!(particles.past.lost(), 0.0);
             let after = Energy::of(&particles, GRAVITY);
             let excess = after.total - (before(lost).total + lost);
             assert!(excess.abs() < 1.0e-6 * now.inner, "{excess} {now:?}");
@@ -199,7 +199,7 @@ mod tests {
             before(2.0 * gain).limit(&mut particles, GRAVITY);
             assert!(particles.positions().eq(kept.positions()));
             assert!(particles.displacements().eq(kept.displacements()));
-            let (left, expected) = (particles.past_mut().lost(), 2.0 * gain - lost);
+            let (left, expected) = (particles.past.lost(), 2.0 * gain - lost);
             assert!((left - expected).abs() < 1.0e-6 * gain, "{left} {expected}");
         }
     }

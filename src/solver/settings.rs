@@ -87,13 +87,13 @@ impl ClothSettings {
                 stretch,
                 max_substeps,
             } => {
-                QuantityError::positive(stretch, "tolerance of stretch")?;
+                Allowed::POSITIVE.check("tolerance of stretch", [stretch])?;
                 max_substeps
             }
         };
         let range = |v: f32| (1.0..=MAX_SUBSTEPS as f32).contains(&v);
-        QuantityError::check(substeps as f32, range, "sub-steps", "from 1 to 10,000")?;
-        QuantityError::not_negative(self.particle_radius, "particle radius (m)")?;
+        Allowed(range, "from 1 to 10,000").check("sub-steps", [substeps as f32])?;
+        Allowed::SIZE.check("particle radius (m)", [self.particle_radius])?;
         let gravity = self.gravity.unwrap_or(Vec3::ZERO);
         Allowed::FINITE.check("gravity (m/s²)", gravity.to_array())
     }

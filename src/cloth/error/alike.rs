@@ -69,7 +69,7 @@ mod tests {
         assert!(!small(0).is_same_fault(&GridError::NotAGrid.into()));
         assert!(!small(0).is_same_fault(&MeshError::Loading.into()));
         let number = |quantity, value| {
-            let error = QuantityError::check(value, |_| false, quantity, "more");
+            let error = crate::cloth::Allowed(|_| false, "more").check(quantity, [value]);
             ClothError::from(error.expect_err("out of range"))
         };
         assert!(number("mass", 0.0).is_same_fault(&number("mass", 1.0)));

@@ -12,7 +12,6 @@ use super::{
     pins::PinError,
     quantity::QuantityError,
     skin::{PaintError, SkinError},
-    springs::SpringError,
     surface::{GrainError, MeshError, TearError},
 };
 
@@ -54,9 +53,6 @@ pub enum ClothError {
     /// The particles are not those of the cloth.
     #[error(transparent)]
     Particle(#[from] ParticleError),
-    /// A list of springs is refused.
-    #[error(transparent)]
-    Spring(#[from] SpringError),
     /// Cloth can't collide with a shape.
     #[error(transparent)]
     Shape(#[from] ShapeError),

@@ -105,11 +105,8 @@ impl ClothMaterial {
     /// # Errors
     /// [`QuantityError`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        let check = QuantityError::check;
-        let finite = QuantityError::not_negative;
-        let positive = |v: f32| v > 0.0 && v.is_finite();
-        let name = "areal density (kg/m²)";
-        check(self.areal_density, positive, name, "positive")?;
+        let finite = |value, quantity| Allowed::SIZE.check(quantity, [value]);
+        Allowed::LENGTH.check("areal density (kg/m²)", [self.areal_density])?;
         finite(self.stretch_compliance, "stretch compliance (m/N)")?;
         finite(self.bend_rigidity, "bending rigidity (N·m)")?;
         if let Some(weft) = self.weft {
@@ -121,8 +118,8 @@ impl ClothMaterial {
             stiffening.validate()?;
         }
         finite(self.friction, "friction μ")?;
-        let name = "shear compliance (m/N)";
-        check(self.shear_compliance, |v| v >= 0.0, name, "zero or more")?;
+        let or_infinite = Allowed(|v| v >= 0.0, "zero or more");
+        or_infinite.check("shear compliance (m/N)", [self.shear_compliance])?;
         finite(self.stretch_damping, "damping along springs (s)")?;
         Allowed::SHARE.check("damping D", [self.damping])
     }
@@ -202,14 +199,13 @@ impl Woven {
     fn of([weft, warp]: [f32; 2]) -> Self {
         let of = |own: f32, other: f32| f64::from(own.max(other / Self::FARTHEST_APART));
         let (weft, warp) = (of(weft, warp), of(warp, weft));
-        let is_alike = weft == warp;
+        let (mean, ratio) = match weft == warp {
+            true => (weft, 1.0),
+            false => ((weft * warp).sqrt(), (weft / warp).powf(0.25)),
+        };
         Self {
-            mean: if is_alike { weft } else { (weft * warp).sqrt() } as f32,
-            ratio: if is_alike {
-                1.0
-            } else {
-                (weft / warp).powf(0.25)
-            } as f32,
+            mean: mean as f32,
+            ratio: ratio as f32,
         }
     }
 }

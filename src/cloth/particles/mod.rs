@@ -59,7 +59,7 @@ pub struct ClothParticles {
     blocks: Vec<Block>,
     substep: f32,
     #[reflect(ignore)]
-    past: Past,
+    pub(crate) past: Past,
     /// Loads in the coming sub-step; empty between ticks.
     #[reflect(ignore)]
     #[cfg_attr(feature = "serialize", serde(skip))]

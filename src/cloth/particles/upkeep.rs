@@ -4,7 +4,7 @@ use bevy::math::{DVec3, Isometry3d, Vec3};
 
 use super::{
     AFTER_A_JUMP, ClothParticles, DensityFactors,
-    past::{Earlier, Past, StepKind},
+    past::{Earlier, StepKind},
     validity::is_valid,
 };
 use crate::cloth::{
@@ -156,16 +156,6 @@ impl ClothParticles {
         (&mut self.blocks, &mut self.past.blocks)
     }
 
-    /// The displacements before the last, block by block, if they are known.
-    pub(crate) fn known_past(&self) -> Option<&[Earlier]> {
-        self.past.known()
-    }
-
-    /// The history of the motion.
-    pub(crate) fn past_mut(&mut self) -> &mut Past {
-        &mut self.past
-    }
-
     /// The order of the coming sub-step, if second order is enabled.
     pub(crate) fn next_step(&mut self) -> StepKind {
         self.past.next(self.blocks.len())
@@ -181,8 +171,7 @@ impl ClothParticles {
             let gained = self.mean_gain();
             if gained != Vec3::ZERO {
                 for Slot { block, lane } in self.layout.slots() {
-                    let block = &mut self.blocks[block];
-                    block.set_displacement(lane, block.displacement(lane) + 0.5 * gained);
+                    self.blocks[block].displace(lane, 0.5 * gained);
                 }
             }
         }
@@ -207,8 +196,7 @@ impl ClothParticles {
 
     /// Adds `displacement` per sub-step (m) to a particle's motion, in the history too.
     pub(crate) fn accelerate(&mut self, slot: Slot, displacement: Vec3) {
-        let block = &mut self.blocks[slot.block];
-        block.set_displacement(slot.lane, block.displacement(slot.lane) + displacement);
+        self.blocks[slot.block].displace(slot.lane, displacement);
         self.past
             .change(slot.block, slot.lane, |moved| moved + displacement);
     }
@@ -281,8 +269,7 @@ impl ClothParticles {
 
     /// Copies `other` into the existing allocation.
     pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.layout = other.layout;
-        self.blocks.clone_from(&other.blocks);
+        self.copy_places_from(other);
         self.substep = other.substep;
         self.past.copy_from(&other.past);
         self.loads.clone_from(&other.loads);

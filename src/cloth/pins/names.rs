@@ -91,9 +91,8 @@ impl Pin {
                 // Up to rounding of the positions.
                 let reach = |place: Vec3| radius + 1.0e-6 * place.length();
                 let is_near = |(_, place): &(_, Vec3)| place.distance(*point) <= reach(*place);
-                places()
-                    .filter(is_near)
-                    .for_each(|(index, _)| pinned(index));
+                let found = places().filter(is_near);
+                found.for_each(|(index, _)| pinned(index));
             }
             Self::AtRest(predicate) => {
                 let found = places().filter(|(_, place)| predicate.holds(*place));

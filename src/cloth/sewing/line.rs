@@ -34,7 +34,7 @@ impl Alignment {
         self.start + self.direction * at
     }
 
-    fn inverse(self) -> Self {
+    pub fn inverse(self) -> Self {
         Self {
             start: -self.start * self.direction,
             direction: self.direction,
@@ -112,7 +112,7 @@ impl Line {
     }
 
     /// The alignment of another line by which both are nearest, with particles at these places (m).
-    fn align(&self, other: &Self, [own, others]: [&[Vec3]; 2]) -> Alignment {
+    pub(super) fn align(&self, other: &Self, [own, others]: [&[Vec3]; 2]) -> Alignment {
         // A ring is turned by steps of the finer one.
         if self.is_ring && (!other.is_ring || self.at.len() > other.at.len()) {
             return other.align(self, [others, own]).inverse();
@@ -147,12 +147,6 @@ impl Line {
             self.point(at, own).distance_squared(there)
         });
         each.iter().sum()
-    }
-
-    /// The alignment of the other line, as seen from that.
-    pub(super) fn aligned_from(&self, other: &Self, places: [&[Vec3]; 2]) -> [Alignment; 2] {
-        let alignment = self.align(other, places);
-        [alignment, alignment.inverse()]
     }
 
     /// Its segments, the last particle of each twice.

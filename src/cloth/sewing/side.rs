@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::line::Line;
 use crate::cloth::{
+    arrays::distinct,
     lines::{EdgeLine, edge_lines},
     pins::{Pin, PinError},
     surface::Surface,
@@ -49,9 +50,7 @@ impl SewnSide {
             let line = Line::new(named, is_ring, surface.rest_positions());
             return Ok(Self::Lines(vec![line]));
         }
-        named.sort_unstable();
-        named.dedup();
-        Ok(Self::selected(surface, &named))
+        Ok(Self::selected(surface, &distinct(named)))
     }
 
     /// Lines or a region of these particles, ascending.

@@ -3,6 +3,7 @@
 use bevy::math::Vec3;
 
 use super::{line::Line, nearest::nearest, side::SewnSide};
+use crate::cloth::arrays::distinct;
 
 /// A particle of one side, and the point of the other side that it is sewn to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,7 +76,8 @@ fn sew(
     part: impl Fn(f32) -> f32,
     stitches: &mut Vec<Stitch>,
 ) {
-    let [there, back] = first.aligned_from(second, places);
+    let there = first.align(second, places);
+    let back = there.inverse();
     let side = u32::from(second.particles.len() > first.particles.len());
     let (fine, coarse) = match side {
         0 => (first, second),
@@ -124,11 +126,8 @@ fn onto_nearest(side: usize, sides: [&SewnSide; 2], places: [&[Vec3]; 2]) -> Vec
     };
     match sides[side] {
         SewnSide::Region(faces) => {
-            let mut points: Vec<u32> = faces.iter().flatten().copied().collect();
-            points.sort_unstable();
-            points.dedup();
-            let each = points.into_iter();
-            each.filter_map(|point| stitch(point, 0.5, 0.0)).collect()
+            let points = distinct(faces.iter().flatten().copied()).into_iter();
+            points.filter_map(|point| stitch(point, 0.5, 0.0)).collect()
         }
         SewnSide::Lines(lines) => {
             let total: f32 = lines.iter().map(|line| line.length).sum();

@@ -114,13 +114,8 @@ impl Skinning {
 
     #[cfg(feature = "mesh")]
     fn of(particles: Vec<Bound>) -> Self {
-        let moving = |Bound { skin, .. }: &Bound| {
-            let each = skin.joints.into_iter().zip(skin.weights);
-            each.filter(|(_, weight)| *weight > 0.0)
-                .map(|(joint, _)| usize::from(joint) + 1)
-                .max()
-        };
-        let joints = particles.iter().filter_map(moving).max().unwrap_or(0);
+        let moving = particles.iter().flat_map(|bound| bound.skin.moving());
+        let joints = moving.map(|(joint, _)| joint + 1).max().unwrap_or(0);
         Self { particles, joints }
     }
 
@@ -133,12 +128,8 @@ impl Skinning {
     #[cfg(feature = "mesh")]
     pub fn heaviest_joint(&self) -> usize {
         let mut sums = vec![0.0_f32; self.joints];
-        for Bound { skin, .. } in &self.particles {
-            for (joint, weight) in skin.joints.into_iter().zip(skin.weights) {
-                if weight > 0.0 {
-                    sums[usize::from(joint)] += weight;
-                }
-            }
+        for (joint, weight) in self.particles.iter().flat_map(|of| of.skin.moving()) {
+            sums[joint] += weight;
         }
         let sums = sums.iter().enumerate().rev();
         let heaviest = sums.max_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -167,12 +158,9 @@ impl Skinning {
 impl Bound {
     /// The weighted sum over its joints.
     fn blended(&self, joints: &[Affine3A], of: impl Fn(&Affine3A) -> Vec3A) -> Vec3A {
-        let (indices, weights) = (self.skin.joints, self.skin.weights);
         let mut sum = Vec3A::ZERO;
-        for (joint, weight) in indices.into_iter().zip(weights) {
-            if weight > 0.0 {
-                sum += weight * of(&joints[usize::from(joint)]);
-            }
+        for (joint, weight) in self.skin.moving() {
+            sum += weight * of(&joints[joint]);
         }
         sum
     }

@@ -164,7 +164,7 @@ impl ClothSkin {
         let positive = Allowed(|v| v > 0.0, "positive");
         positive.check("the skin's teleport distance (m)", [self.teleport_distance])?;
         if let Some(backstop) = &self.backstop {
-            QuantityError::positive(backstop.radius, "the backstop's radius (m)")?;
+            Allowed::POSITIVE.check("the backstop's radius (m)", [backstop.radius])?;
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::{cmp::Ordering, ops::Range};
 
 use crate::cloth::{
+    arrays::distinct,
     grid::ClothGrid,
     material::ClothStiffening,
     spring::{Spring, SpringKind},
@@ -84,9 +85,7 @@ impl SpringList {
         let chosen = (0..self.springs.len()).filter(|at| is_beyond(&self.springs[*at]));
         let chosen: Vec<usize> = chosen.collect();
         let ends = chosen.iter().flat_map(|at| self.springs[*at].ends);
-        let mut particles: Vec<u32> = ends.collect();
-        particles.sort_unstable();
-        particles.dedup();
+        let particles = distinct(ends);
         let number = |particle: u32| particles.partition_point(|other| *other < particle) as u32;
         let renamed = |at: &usize| {
             let spring = self.springs[*at];

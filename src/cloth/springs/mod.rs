@@ -63,19 +63,15 @@ impl Compliances {
         (row, column): (u32, u32),
     ) -> Option<f32> {
         let on_border = |index: u32, count: u32| index == 0 || index + 1 == count;
-        let (width, narrowed) = match (down, across) {
-            (0, _) => (grid.spacing().y, on_border(row, grid.rows())),
-            (_, 0) => (grid.spacing().x, on_border(column, grid.columns())),
-            _ => (grid.step_length((down, across)), false),
-        };
-        let [along_rows, along_columns] = self.structural;
-        let compliance = match (down, across) {
-            (0, _) => along_rows,
-            (_, 0) => along_columns,
-            _ => self.shear,
+        let ([along_rows, along_columns], spacing) = (self.structural, grid.spacing());
+        let length = grid.step_length((down, across));
+        let (compliance, width, narrowed) = match (down, across) {
+            (0, _) => (along_rows, spacing.y, on_border(row, grid.rows())),
+            (_, 0) => (along_columns, spacing.x, on_border(column, grid.columns())),
+            _ => (self.shear, length, false),
         };
         let narrowed = if narrowed { 2.0 } else { 1.0 };
-        let of_strip = compliance * grid.step_length((down, across)) / width * narrowed;
+        let of_strip = compliance * length / width * narrowed;
         compliance.is_finite().then_some(of_strip)
     }
 }
@@ -298,18 +294,14 @@ impl Springs {
 /// The compliance of a square patch in the direction of each spring (m/N).
 fn compliances(surface: &Surface, material: &ClothMaterial) -> impl Fn(&Link) -> f32 {
     let woven = material.woven_stretch();
-    // The springs of a torn grid are those of the grid.
-    let [along_rows, along_columns] = match surface.rest_grid() {
-        Some(_) => material.stretch_compliances(),
-        None => [woven.mean; 2],
-    };
     let stiffness = |compliance: f32| 1.0 / compliance;
     let added = stiffness(material.shear_compliance) - stiffness(woven.mean);
-    let across = match surface.rest_grid() {
-        Some(_) => material.shear_compliance,
+    let ([along_rows, along_columns], across) = match surface.rest_grid() {
+        // The springs of a torn grid are those of the grid.
+        Some(_) => (material.stretch_compliances(), material.shear_compliance),
         // Rigid stretch leaves nothing to add, not even to rigid shear.
-        None if woven.mean > 0.0 => stiffness(added.max(0.0)),
-        None => f32::INFINITY,
+        None if woven.mean > 0.0 => ([woven.mean; 2], stiffness(added.max(0.0))),
+        None => ([woven.mean; 2], f32::INFINITY),
     };
     move |link| match link.kind {
         SpringKind::Structural => {

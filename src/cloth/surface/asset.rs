@@ -87,15 +87,10 @@ fn vectors(values: Option<&VertexAttributeValues>) -> Option<Vec<Vec3>> {
 /// # Errors
 /// [`MeshError::NotReadable`] for a mesh that is only in the render world.
 pub(crate) fn skin_of_asset(mesh: &Mesh) -> Result<Option<Vec<JointWeights>>, MeshError> {
-    let read = |attribute| attribute_of(mesh, attribute);
-    let (
-        Some(VertexAttributeValues::Uint16x4(joints)),
-        Some(VertexAttributeValues::Float32x4(weights)),
-    ) = (
-        read(Mesh::ATTRIBUTE_JOINT_INDEX)?,
-        read(Mesh::ATTRIBUTE_JOINT_WEIGHT)?,
-    )
-    else {
+    use VertexAttributeValues::{Float32x4, Uint16x4};
+    let joints = attribute_of(mesh, Mesh::ATTRIBUTE_JOINT_INDEX)?;
+    let weights = attribute_of(mesh, Mesh::ATTRIBUTE_JOINT_WEIGHT)?;
+    let (Some(Uint16x4(joints)), Some(Float32x4(weights))) = (joints, weights) else {
         return Ok(None);
     };
     let each = joints.iter().zip(weights);

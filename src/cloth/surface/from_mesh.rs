@@ -16,9 +16,8 @@ use super::{
     weld::same_places,
 };
 use crate::cloth::{
-    arrays::{chosen, sorted},
-    limits::FARTHEST,
-    quantity::QuantityError,
+    arrays::{chosen, distinct, sorted},
+    quantity::Allowed,
     spring::SpringKind,
 };
 
@@ -55,28 +54,14 @@ impl Surface {
 }
 
 fn check(mesh: &TriangleMesh, weld: f32, scale: Vec3) -> Result<(), MeshError> {
-    QuantityError::not_negative(weld, "weld distance (m)")?;
+    Allowed::SIZE.check("weld distance (m)", [weld])?;
     let particles = mesh.positions.len();
     // A particle usually has a few vertices; far too many are rejected before welding.
     if particles > 8 * MAX_MESH_PARTICLES {
         return Err(MeshError::TooLarge { particles });
     }
-    // Not by the largest element, which ignores NaN.
-    let is_far = |place: &Vec3| !(*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
-    if let Some(vertex) = mesh.positions.iter().position(is_far) {
-        let position = mesh.positions[vertex];
-        return Err(MeshError::VertexNotFinite { vertex, position });
-    }
-    let vertices = mesh.positions.len();
-    let is_beyond = |corners: &[u32; 3]| corners.iter().any(|at| *at as usize >= vertices);
-    if let Some(triangle) = mesh.triangles.iter().position(is_beyond) {
-        return Err(MeshError::TriangleOutOfRange {
-            triangle,
-            corners: mesh.triangles[triangle],
-            vertices,
-        });
-    }
-    Ok(())
+    MeshError::check_vertices(&mesh.positions, scale)?;
+    MeshError::check_triangles(&mesh.triangles, particles)
 }
 
 /// Welded vertices, on the way to a surface.
@@ -161,9 +146,7 @@ impl Welded {
 
     /// Numbers the particles that are corners of a face, so that neighbours are near each other in memory.
     fn arrange(&mut self) {
-        let mut edges: Vec<[u32; 2]> = self.faces.iter().flat_map(|face| sides(*face)).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let edges = distinct(self.faces.iter().flat_map(|face| sides(*face)));
         let graph = Graph::new(self.rest.len(), edges.iter().map(|edge| (*edge, 1.0)));
         let mut order = graph.order();
         order.retain(|particle| !graph.of(*particle).is_empty());

@@ -59,7 +59,6 @@ pub(crate) use graph::Graph;
 pub(crate) use normals::add_face_normals;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
-pub(crate) use torn::GridStencil;
 pub(crate) use triangles::JointWeights;
 #[cfg(feature = "mesh")]
 pub(crate) use weld::same_places;

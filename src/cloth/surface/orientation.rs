@@ -50,7 +50,7 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
                 let other = other as usize;
                 let [a, b] = [before[index][(at + 1) % 3], before[index][(at + 2) % 3]];
                 // Two faces of one orientation run along their common edge in opposite directions.
-                let runs = |face: [u32; 3]| edges(face).contains(&[a, b]);
+                let runs = |[c, d, e]: [u32; 3]| [[c, d], [d, e], [e, c]].contains(&[a, b]);
                 if runs(faces[index]) == runs(faces[other]) {
                     faces[other].swap(1, 2);
                 }
@@ -72,10 +72,6 @@ pub(super) fn orient(faces: &mut [[u32; 3]], sides: &[Side], rest: &[Vec3], norm
             }
         }
     }
-}
-
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use bevy::{
 };
 use thiserror::Error;
 
-use crate::cloth::quantity::QuantityError;
+use crate::cloth::{limits::FARTHEST, quantity::QuantityError};
 
 /// Triangles to make a [`Surface`](crate::cloth::Surface) from.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -113,6 +113,37 @@ pub enum MeshError {
     Quantity(#[from] QuantityError),
 }
 
+impl MeshError {
+    /// Checks that all vertices are finite and in range under a scale.
+    ///
+    /// # Errors
+    /// [`MeshError::VertexNotFinite`] for the first that is not.
+    pub(crate) fn check_vertices(vertices: &[Vec3], scale: Vec3) -> Result<(), Self> {
+        // Not by the largest element, which ignores NaN.
+        let is_far = |place: &Vec3| !(*place * scale).abs().cmplt(Vec3::splat(FARTHEST)).all();
+        vertices.iter().position(is_far).map_or(Ok(()), |vertex| {
+            let position = vertices[vertex];
+            Err(Self::VertexNotFinite { vertex, position })
+        })
+    }
+
+    /// Checks that all triangles are of that many vertices.
+    ///
+    /// # Errors
+    /// [`MeshError::TriangleOutOfRange`] for the first that is not.
+    pub(crate) fn check_triangles(triangles: &[[u32; 3]], vertices: usize) -> Result<(), Self> {
+        let is_beyond = |corners: &[u32; 3]| corners.iter().any(|at| *at as usize >= vertices);
+        let beyond = triangles.iter().position(is_beyond);
+        beyond.map_or(Ok(()), |triangle| {
+            Err(Self::TriangleOutOfRange {
+                triangle,
+                corners: triangles[triangle],
+                vertices,
+            })
+        })
+    }
+}
+
 /// A vertex attribute of a mesh, converted to the particles of a cloth: a particle of several vertices takes their
 /// largest value.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,4 +186,14 @@ impl VertexAttribute {
 pub(crate) struct JointWeights {
     pub joints: [u16; 4],
     pub weights: [f32; 4],
+}
+
+impl JointWeights {
+    /// The joints with a weight, and those.
+    #[inline]
+    pub fn moving(&self) -> impl Iterator<Item = (usize, f32)> {
+        let each = self.joints.into_iter().zip(self.weights);
+        each.filter(|(_, weight)| *weight > 0.0)
+            .map(|(joint, weight)| (usize::from(joint), weight))
+    }
 }

@@ -40,12 +40,10 @@ pub(crate) fn moving_of(
 impl MovingCollider {
     /// A ball that moves from one centre to another (m) without rotation.
     pub fn ball(radius: f32, from: Vec3, to: Vec3) -> Self {
+        let pose = Isometry3d::from_translation(from);
         Self {
-            shape: ColliderShape::Ball { radius },
-            from: Isometry3d::from_translation(from),
             to,
-            turn: Vec3::ZERO,
-            body: None,
+            ..Self::still(ColliderShape::Ball { radius }, pose)
         }
     }
 

@@ -12,7 +12,7 @@ use super::{
     geometry::{ColliderGeometry, Parts, turn_up},
     shape::ColliderShape,
 };
-use crate::cloth::{ClothError, QuantityError, ShapeError};
+use crate::cloth::{Allowed, ClothError, QuantityError, ShapeError};
 
 /// A shape of many points, before the transform's scale. Clones share it and the geometry built from it: cloning is
 /// cheap, and clones are equal.
@@ -138,10 +138,7 @@ impl Source {
 /// [`QuantityError`] for a scale that is zero or not finite.
 pub(crate) fn check_scale(scale: Vec3) -> Result<(), QuantityError> {
     let is_scale = |scale: f32| scale != 0.0 && scale.is_finite();
-    for scale in scale.to_array() {
-        QuantityError::check(scale, is_scale, "the shape's scale", "finite and not zero")?;
-    }
-    Ok(())
+    Allowed(is_scale, "finite and not zero").check("the shape's scale", scale.to_array())
 }
 
 /// The triangles of a height field: rows along z and columns along x, around the origin.

@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::{ClothError, QuantityError, SelfCollisionError, Surface};
+use crate::cloth::{Allowed, ClothError, SelfCollisionError, Surface};
 
 /// Largest thickness, as a fraction of the shortest spacing: a thicker cloth would push its own neighbours.
 const MAX_OF_SPACING: f32 = 0.5;
@@ -66,15 +66,12 @@ impl ClothSelfCollision {
     /// Checks all values against the surface of the cloth.
     ///
     /// # Errors
-    /// [`QuantityError`] for a thickness that is not positive, or a friction that is negative or not finite;
+    /// [`QuantityError`](crate::cloth::QuantityError) for a thickness that is not positive, or a friction that is negative
+    /// or not finite;
     /// [`SelfCollisionError::TooThick`] for more than half of the shortest spacing.
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
-        let thickness = QuantityError::check(
-            self.thickness,
-            |thickness| thickness > 0.0 && thickness.is_finite(),
-            "the thickness of self-colliding cloth (m)",
-            "positive",
-        )?;
+        let thickness = self.thickness;
+        Allowed::LENGTH.check("the thickness of self-colliding cloth (m)", [thickness])?;
         let shortest = surface.spacing().shortest;
         if thickness > MAX_OF_SPACING * shortest {
             return Err(ClothError::SelfCollision(SelfCollisionError::TooThick {
@@ -82,12 +79,7 @@ impl ClothSelfCollision {
                 shortest,
             }));
         }
-        QuantityError::check(
-            self.friction,
-            |friction| friction >= 0.0 && friction.is_finite(),
-            "friction between layers of cloth (1)",
-            "zero or more",
-        )?;
-        Ok(())
+        let size = Allowed(|v| v >= 0.0 && v.is_finite(), "zero or more");
+        Ok(size.check("friction between layers of cloth (1)", [self.friction])?)
     }
 }

@@ -1,17 +1,15 @@
 //! The tree of a grid: rows and columns halved on each level.
 
-use std::ops::Range;
-
 use bevy::math::Vec3;
 
 use super::{
-    halving::{GridTree, Level, Part},
-    node::Node,
+    halving::{GridTree, Part},
+    node::{Node, Outline},
     shape::Tree,
-    stored::{Bounds, Volumes, each, growth},
+    stored::{Bounds, Volumes, each},
 };
 use crate::{
-    cloth::{ClothParticles, Layout},
+    cloth::ClothParticles,
     hierarchy::{
         probe::Probe,
         rule::BoundRule,
@@ -21,14 +19,12 @@ use crate::{
 };
 
 impl Tree for GridTree {
-    fn levels(&self) -> &[Range<u32>] {
-        &self.ranges
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn node(&self, level: usize, node: u32) -> Node {
-        let (row, column) = self.parts(level, node);
-        let Level { rows, columns, .. } = &self.levels[level];
-        let (rows, columns) = (&rows[row as usize], &columns[column as usize]);
+        let (_, rows, columns) = self.parts(level, node);
         let mut children = [0; 4];
         let mut child_count = 0;
         if let Some(below) = self.levels.get(level + 1) {
@@ -41,55 +37,31 @@ impl Tree for GridTree {
         }
         Node {
             level,
-            middle: rows.middle * self.layout.columns + columns.middle,
+            middle: rows.middle * self.outline.layout.columns + columns.middle,
             rest_radius: self.levels[level].rest_radius(rows, columns),
             children,
             child_count,
         }
     }
 
-    fn diagonals(&self) -> bool {
-        self.diagonals
-    }
-
-    fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    fn tops(&self) -> &[u32] {
-        &[0]
-    }
-
-    fn rebuild(
-        &self,
-        volumes: &mut Volumes,
-        rule: BoundRule,
-        particles: &ClothParticles,
-        stretch: f32,
-    ) {
-        each!(volumes, bounds => {
-            bounds.rule = rule;
-            bounds.growth = growth(stretch);
-            match rule {
-                BoundRule::RestShape => {}
-                BoundRule::Refit => bounds.refit_levels.refit(self, particles.blocks()),
-                BoundRule::Paper => rebuild_paper(bounds, self, particles),
-            }
+    fn rebuild(&self, volumes: &mut Volumes, particles: &ClothParticles) {
+        each!(volumes, bounds => match bounds.rule {
+            BoundRule::RestShape => {}
+            BoundRule::Refit => bounds.refit_levels.refit(self, particles.blocks()),
+            BoundRule::Paper => rebuild_paper(bounds, self, particles),
         });
     }
 
     fn volume(&self, volumes: &Volumes, particles: &ClothParticles, node: u32) -> NodeVolume {
-        let level = self.ranges.partition_point(|level| level.end <= node);
-        let (row, column) = self.parts(level, node);
-        let Level { rows, columns, .. } = &self.levels[level];
-        let (rows, columns) = (&rows[row as usize], &columns[column as usize]);
+        let level = (self.outline.levels).partition_point(|level| level.end <= node);
+        let (place, rows, columns) = self.parts(level, node);
         each!(volumes, bounds => match bounds.rule {
             BoundRule::RestShape => {
                 let radius = self.levels[level].rest_radius(rows, columns);
                 bounds.at_rest(middle(particles, rows, columns), radius).into()
             }
             BoundRule::Refit | BoundRule::Paper => {
-                stored(bounds, self, particles, level, [row, column]).into()
+                stored(bounds, self, particles, level, place).into()
             }
         })
     }
@@ -148,13 +120,13 @@ fn stored<V: Volume>(
 /// The paper's Figure 4.
 fn rebuild_paper<V: Volume>(bounds: &mut Bounds<V>, tree: &GridTree, particles: &ClothParticles) {
     bounds.nodes.clear();
-    let longest = tree.layout.columns.max(tree.layout.rows) as f32;
-    let mut radius = (longest + 1.0) / 2.0 * tree.longest_spacing();
+    let longest = tree.outline.layout.columns.max(tree.outline.layout.rows) as f32;
+    let mut radius = (longest + 1.0) / 2.0 * tree.spacing.max_element();
     for level in &tree.levels {
         for rows in &level.rows {
             for columns in &level.columns {
                 let corner = |row, column| {
-                    let slot = tree.layout.slot(row, column);
+                    let slot = tree.outline.layout.slot(row, column);
                     particles.blocks()[slot.block].position(slot.lane)
                 };
                 let (left, right) = (columns.span.start, columns.span.end - 1);
@@ -196,7 +168,8 @@ fn descend(
                         let (below, beside) = (&rows.children, &columns.children);
                         next.push([below.start, below.end, beside.start, beside.end]);
                     } else if touching && probe.meets(middle(particles, rows, columns)) {
-                        (found.candidates).push(rows.middle * tree.layout.columns + columns.middle);
+                        (found.candidates)
+                            .push(rows.middle * tree.outline.layout.columns + columns.middle);
                     }
                 }
             }

@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use bevy::math::Vec2;
 
+use super::node::Outline;
 use crate::cloth::{ClothGrid, Layout};
 
 /// A range of rows or columns on one level.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 pub struct Part {
     /// The first, and one past the last.
     pub span: Range<u32>,
@@ -59,11 +60,9 @@ impl Level {
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridTree {
     pub levels: Vec<Level>,
-    pub ranges: Vec<Range<u32>>,
-    pub layout: Layout,
-    /// Whether distances are also along the diagonals of cells.
-    pub diagonals: bool,
-    spacing: Vec2,
+    pub outline: Outline,
+    /// Distances between neighbours (m).
+    pub spacing: Vec2,
 }
 
 impl GridTree {
@@ -122,24 +121,27 @@ impl GridTree {
         }
         let nodes = |level: &Level| level.first..level.index(level.rows.len() as u32, 0);
         Self {
-            ranges: levels.iter().map(nodes).collect(),
+            outline: Outline {
+                layout,
+                levels: levels.iter().map(nodes).collect(),
+                diagonals,
+                tops: vec![0],
+            },
             levels,
-            layout,
-            diagonals,
             spacing: grid.spacing(),
         }
     }
 
-    /// The larger distance between neighbours (m).
-    pub fn longest_spacing(&self) -> f32 {
-        self.spacing.max_element()
-    }
-
-    /// The parts of a node of `level`.
-    pub fn parts(&self, level: usize, node: u32) -> (u32, u32) {
-        let level = &self.levels[level];
-        let (index, columns) = (node - level.first, level.columns.len() as u32);
-        (index / columns, index % columns)
+    /// The parts of a node of `level`, after their places.
+    pub fn parts(&self, level: usize, node: u32) -> ([u32; 2], &Part, &Part) {
+        let Level { rows, columns, .. } = &self.levels[level];
+        let (index, width) = (node - self.levels[level].first, columns.len() as u32);
+        let [row, column] = [index / width, index % width];
+        (
+            [row, column],
+            &rows[row as usize],
+            &columns[column as usize],
+        )
     }
 }
 
@@ -151,14 +153,10 @@ fn halved(full: u32, count: u32, unit: u32) -> Vec<Vec<Part>> {
         let middle = span.start + (span.end - span.start - 1) / 2;
         Part {
             half: span.end - 1 - middle,
-            is_short: 0,
             span,
             full_end: full.end,
             middle,
-            children: 0..0,
-            block: 0,
-            lane: 0,
-            in_strip: 0,
+            ..Part::default()
         }
     };
     let mut levels = vec![vec![part(0..full)]];

@@ -20,10 +20,9 @@ use bevy::{
 use crate::cloth::{ClothGrid, ClothParticles, Surface};
 use network::NetworkTree;
 use shape::Tree;
-use stored::growth;
 
 pub use node::Node;
-pub(crate) use stored::{Volumes, each};
+pub(crate) use stored::{Volumes, each, growth};
 
 use halving::GridTree;
 
@@ -78,7 +77,7 @@ impl QuadTree {
     /// The nodes of each level, the root's first. All leaves are on the last level; above it, a patch of one particle
     /// has itself as its only child.
     pub fn levels(&self) -> &[Range<u32>] {
-        self.0.levels()
+        &self.0.outline().levels
     }
 
     /// The level of a node, 0 for the root.
@@ -96,7 +95,7 @@ impl QuadTree {
 
     /// Largest distance at rest from a particle to a corner of its faces, along the springs (m).
     pub(crate) fn face_reach(&self, surface: &Surface) -> f32 {
-        surface.face_reach(self.0.diagonals())
+        surface.face_reach(self.0.outline().diagonals)
     }
 
     /// A sphere around all particle centres, from the root's rest shape at a stretch
@@ -111,7 +110,7 @@ impl QuadTree {
             let radius = (node.rest_radius * growth(stretch)).max(0.0);
             (particles.position_at(node.middle as usize), radius)
         };
-        let mut tops = self.0.tops().iter().map(sphere);
+        let mut tops = self.0.outline().tops.iter().map(sphere);
         let Some((centre, radius)) = tops.next() else {
             return none;
         };
@@ -123,17 +122,17 @@ impl QuadTree {
 
     /// Numbers of nodes and columns, which identify the volumes of a tree.
     pub(super) fn size(&self) -> [usize; 2] {
-        [self.len(), self.0.layout().columns as usize]
+        [self.len(), self.0.outline().layout.columns as usize]
     }
 
     /// Whether the tree belongs to `particles`: the same number and layout.
     pub fn matches(&self, particles: &ClothParticles) -> bool {
-        self.0.layout() == particles.layout()
+        self.0.outline().layout == particles.layout()
     }
 
     /// Whether it may be a surface's tree: its particles have the same layout.
     pub(crate) fn is_of(&self, surface: &Surface) -> bool {
-        self.0.layout() == surface.layout()
+        self.0.outline().layout == surface.layout()
     }
 
     pub(super) fn shape(&self) -> &dyn Tree {

@@ -5,9 +5,9 @@ use std::ops::Range;
 use bevy::math::{DVec3, Vec3};
 
 use super::{
-    node::Node,
+    node::{Node, Outline},
     shape::Tree,
-    stored::{Bounds, Volumes, each, growth},
+    stored::{Bounds, Volumes, each},
 };
 use crate::{
     cloth::{ClothParticles, Graph, Layout, ShortestPaths, Slot},
@@ -26,12 +26,9 @@ const FOLDED: f64 = 1.5;
 /// A tree over arbitrarily connected particles.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct NetworkTree {
-    /// Layout of the particles.
-    layout: Layout,
+    /// Its tops are the topmost nodes with a finite radius.
+    outline: Outline,
     nodes: Vec<NetworkNode>,
-    ranges: Vec<Range<u32>>,
-    /// The topmost nodes with a finite radius.
-    tops: Vec<u32>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -46,10 +43,8 @@ struct NetworkNode {
 impl NetworkTree {
     /// Builds a tree over particles at `rest` (m), which lie as `layout` says, with paths along the edges of `graph`.
     pub fn new(rest: &[Vec3], layout: Layout, graph: &Graph) -> Self {
-        let mut tree = Self {
-            layout,
-            ..Self::default()
-        };
+        let mut tree = Self::default();
+        tree.outline.layout = layout;
         let mut splitter = Splitter {
             rest,
             order: (0..rest.len() as u32).collect(),
@@ -83,7 +78,7 @@ impl NetworkTree {
                     children: child..end,
                 });
             }
-            tree.ranges.push(first..below);
+            tree.outline.levels.push(first..below);
             patches = parts;
         }
         tree.find_tops();
@@ -95,7 +90,7 @@ impl NetworkTree {
         while let Some(index) = queue.pop() {
             let node = &self.nodes[index as usize];
             if node.rest_radius.is_finite() || node.children.is_empty() {
-                self.tops.push(index);
+                self.outline.tops.push(index);
             } else {
                 queue.extend(node.children.clone());
             }
@@ -129,56 +124,31 @@ impl NetworkTree {
 }
 
 impl Tree for NetworkTree {
-    fn levels(&self) -> &[Range<u32>] {
-        &self.ranges
+    fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     fn node(&self, level: usize, node: u32) -> Node {
-        let NetworkNode {
-            middle,
-            rest_radius,
-            ref children,
-            ..
-        } = self.nodes[node as usize];
-        let mut ids = [0; 4];
-        for (id, child) in ids.iter_mut().zip(children.clone()) {
+        let of = &self.nodes[node as usize];
+        let mut children = [0; 4];
+        for (id, child) in children.iter_mut().zip(of.children.clone()) {
             *id = child;
         }
         Node {
             level,
-            middle,
-            rest_radius,
-            children: ids,
-            child_count: children.len() as u8,
+            middle: of.middle,
+            rest_radius: of.rest_radius,
+            children,
+            child_count: of.children.len() as u8,
         }
     }
 
-    fn diagonals(&self) -> bool {
-        false
-    }
-
-    fn layout(&self) -> Layout {
-        self.layout
-    }
-
-    fn tops(&self) -> &[u32] {
-        &self.tops
-    }
-
-    fn rebuild(
-        &self,
-        volumes: &mut Volumes,
-        rule: BoundRule,
-        particles: &ClothParticles,
-        stretch: f32,
-    ) {
-        each!(volumes, bounds => {
+    fn rebuild(&self, volumes: &mut Volumes, particles: &ClothParticles) {
+        each!(volumes, bounds => match bounds.rule {
+            BoundRule::RestShape => {}
+            BoundRule::Refit => self.refit(bounds, particles),
             // The paper's Figure 4 is for grids.
-            bounds.rule = if rule == BoundRule::Paper { BoundRule::RestShape } else { rule };
-            bounds.growth = growth(stretch);
-            if rule == BoundRule::Refit {
-                self.refit(bounds, particles);
-            }
+            BoundRule::Paper => bounds.rule = BoundRule::RestShape,
         });
     }
 

@@ -1,6 +1,23 @@
 //! A node of a tree.
 
+use std::ops::Range;
+
 use bevy::reflect::Reflect;
+
+use crate::cloth::Layout;
+
+/// Facts about a tree.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub struct Outline {
+    /// The layout of its particles.
+    pub layout: Layout,
+    /// The nodes of each level, the root's first.
+    pub levels: Vec<Range<u32>>,
+    /// Whether distances are also along the diagonals of a grid's cells.
+    pub diagonals: bool,
+    /// Nodes that together contain all particles: the root, unless no path leads from it to all of them.
+    pub tops: Vec<u32>,
+}
 
 /// A node of a [`QuadTree`](crate::hierarchy::QuadTree): a patch of the cloth.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq)]

@@ -14,27 +14,17 @@ use crate::{cloth::Block, hierarchy::volume::Volume};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RefitLevels<V: Volume> {
     /// Levels whose nodes are no wider than a strip, in groups of eight nodes.
-    lanes: Vec<Aligned<V::Lanes>>,
+    pub(super) lanes: Vec<Aligned<V::Lanes>>,
     /// The levels above.
-    nodes: Vec<V>,
+    pub(super) nodes: Vec<V>,
     /// Start of each level in either.
-    first: Vec<usize>,
+    pub(super) first: Vec<usize>,
 }
 
 /// Aligned to a cache line, like blocks of particles: no eight numbers cross a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-struct Aligned<T>(T);
-
-impl<V: Volume> Default for RefitLevels<V> {
-    fn default() -> Self {
-        Self {
-            lanes: Vec::new(),
-            nodes: Vec::new(),
-            first: Vec::new(),
-        }
-    }
-}
+pub(super) struct Aligned<T>(T);
 
 impl<V: Volume> RefitLevels<V> {
     /// Updates all volumes.
@@ -92,7 +82,7 @@ impl<V: Volume> RefitLevels<V> {
             }
         }
         let (parts, width) = (at.parts_in_strip as usize, below.parts_in_strip as usize);
-        let strip = tree.layout.strip as usize;
+        let strip = tree.outline.layout.strip as usize;
         let end_of_level = self.first[level] + at.rows.len() * parts;
         let (here, rest) = self.lanes.split_at_mut(end_of_level);
         let out = &mut here[self.first[level] + row * parts..][..parts];

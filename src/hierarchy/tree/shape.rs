@@ -1,38 +1,25 @@
 //! The interface of all trees.
 
-use std::{fmt::Debug, ops::Range};
+use std::fmt::Debug;
 
-use super::{node::Node, stored::Volumes};
+use super::{
+    node::{Node, Outline},
+    stored::Volumes,
+};
 use crate::{
-    cloth::{ClothParticles, Layout},
-    hierarchy::{probe::Probe, rule::BoundRule, search_buffers::SearchBuffers, volume::NodeVolume},
+    cloth::ClothParticles,
+    hierarchy::{probe::Probe, search_buffers::SearchBuffers, volume::NodeVolume},
 };
 
 /// A tree over a cloth's particles, built once for a surface.
 pub(crate) trait Tree: Debug + Send + Sync {
-    /// The nodes of each level, the root's first.
-    fn levels(&self) -> &[Range<u32>];
+    fn outline(&self) -> &Outline;
 
     /// A node of a level.
     fn node(&self, level: usize, node: u32) -> Node;
 
-    /// Whether distances are also along the diagonals of a grid's cells.
-    fn diagonals(&self) -> bool;
-
-    /// The layout of its particles.
-    fn layout(&self) -> Layout;
-
-    /// Nodes that together contain all particles: the root, unless no path leads from it to all of them.
-    fn tops(&self) -> &[u32];
-
-    /// Updates the volumes for the particles.
-    fn rebuild(
-        &self,
-        volumes: &mut Volumes,
-        rule: BoundRule,
-        particles: &ClothParticles,
-        stretch: f32,
-    );
+    /// Updates the volumes for the particles, by their rule and growth. May choose another rule.
+    fn rebuild(&self, volumes: &mut Volumes, particles: &ClothParticles);
 
     /// The volume of a node around its particles' centres.
     fn volume(&self, volumes: &Volumes, particles: &ClothParticles, node: u32) -> NodeVolume;

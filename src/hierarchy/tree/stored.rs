@@ -32,7 +32,11 @@ impl<V: Volume> Default for Bounds<V> {
             rule: BoundRule::default(),
             growth: 1.0,
             nodes: Vec::new(),
-            refit_levels: RefitLevels::default(),
+            refit_levels: RefitLevels {
+                lanes: Vec::new(),
+                nodes: Vec::new(),
+                first: Vec::new(),
+            },
         }
     }
 }

@@ -96,34 +96,27 @@ impl ChainBending {
         }
         let strip = layout.strip as usize;
         let row = || vec![NOTHING; strip];
-        let mut new = Self {
+        let count = |family: &Family| match family.solve {
+            Solve::Across => family.stiffness.len() * LANES * strip,
+            _ => family.stiffness.len() * rows as usize,
+        };
+        let none = |of: &Family| vec![NOTHING; count(of)];
+        let factors = Factors {
+            weight: f32::NAN,
+            stiffness: families.iter().map(|of| of.stiffness.clone()).collect(),
+            factors: families.iter().map(none).collect(),
+        };
+        Self {
             layout,
             families,
             inverse_masses: vec![[f32::NAN; LANES]; layout.blocks()],
-            factors: Default::default(),
+            // Room for all at once: no later step may ask for it.
+            factors: std::array::from_fn(|_| factors.clone()),
             links: [row(), row()],
             moments: [row(), row(), row()],
             solved: vec![NOTHING; strip * rows as usize],
             columns: vec![NOTHING; LANES * strip],
             none: (row(), row()),
-        };
-        // Room for all at once: no later step may ask for it.
-        new.factors = std::array::from_fn(|_| new.no_factors());
-        new
-    }
-
-    /// Room for those of a weight.
-    fn no_factors(&self) -> Factors {
-        let rows = self.layout.rows as usize;
-        let count = |family: &Family| match family.solve {
-            Solve::Across => family.stiffness.len() * self.columns.len(),
-            _ => family.stiffness.len() * rows,
-        };
-        let families = || self.families.iter();
-        Factors {
-            weight: f32::NAN,
-            stiffness: families().map(|of| of.stiffness.clone()).collect(),
-            factors: families().map(|of| vec![NOTHING; count(of)]).collect(),
         }
     }
 

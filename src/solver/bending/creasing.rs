@@ -5,7 +5,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use crate::cloth::QuantityError;
+use crate::cloth::{Allowed, QuantityError};
 
 /// Creases: cloth that is bent beyond its yield curvature keeps a part of that. Folded paper stays folded, a leather strap
 /// remembers the buckle. A cloth without this component springs back from any fold, and pays nothing.
@@ -58,13 +58,10 @@ impl ClothCreasing {
     /// # Errors
     /// [`QuantityError`] for the first value that is out of range.
     pub fn validate(&self) -> Result<(), QuantityError> {
-        let is_positive = |of: f32| of > 0.0 && of.is_finite();
-        let (name, range) = ("yield curvature (1/m)", "positive, and finite");
-        QuantityError::check(self.yield_curvature, is_positive, name, range)?;
-        let is_part = |of: f32| (0.0..1.0).contains(&of);
-        let name = "hardening of creases";
-        QuantityError::check(self.hardening, is_part, name, "from 0 to less than 1")?;
-        Ok(())
+        let positive = Allowed(|of| of > 0.0 && of.is_finite(), "positive, and finite");
+        positive.check("yield curvature (1/m)", [self.yield_curvature])?;
+        let part = Allowed(|of| (0.0..1.0).contains(&of), "from 0 to less than 1");
+        part.check("hardening of creases", [self.hardening])
     }
 
     /// The largest curvature that a released strip keeps, `κ_y (1 − h) ⁄ h` (1/m): one that is bent further yields again on

@@ -17,7 +17,7 @@ const SPREAD: f32 = 9.0 / 4.0;
 /// A grid's resistance to bending.
 #[derive(Debug, Clone)]
 pub(super) struct GridBending {
-    plate: Plate,
+    pub plate: Plate,
     push: Push,
     /// From when it first may be needed.
     chains: Option<ChainBending>,
@@ -89,16 +89,6 @@ impl GridBending {
             creases.push(None, weight, blocks);
         }
         self.push.apply(blocks, 0.0, weight, kernels);
-    }
-
-    /// Lets it crease, or forgets its creases.
-    pub fn set_creasing(&mut self, grid: &ClothGrid, creases: bool) {
-        if creases {
-            let new = || Box::new(GridCreases::new(grid, &self.plate));
-            self.creases.get_or_insert_with(new);
-        } else {
-            self.creases = None;
-        }
     }
 
     /// Whether forces push it, as it was prepared.

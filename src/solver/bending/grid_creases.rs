@@ -13,7 +13,7 @@ use super::{
     creasing::{ClothCreasing, recall},
     plate::Plate,
 };
-use crate::cloth::{Block, ClothGrid, DX, DY, DZ, Layout, MapInline, Slot, W};
+use crate::cloth::{Block, ClothGrid, Layout, MapInline, Slot};
 
 /// What stencils are solved together, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,11 +157,8 @@ impl GridCreases {
         for crease in creases {
             for (particle, force) in crease.particles.iter().zip(&crease.forces) {
                 let Slot { block, lane } = self.slots[*particle as usize];
-                let view = blocks[block].view_mut();
-                let weight = weight * view[W + lane];
-                view[DX + lane] += weight * force.x;
-                view[DY + lane] += weight * force.y;
-                view[DZ + lane] += weight * force.z;
+                let block = &mut blocks[block];
+                block.displace(lane, weight * block.inverse_mass(lane) * *force);
             }
         }
     }
@@ -311,13 +308,6 @@ impl Frame {
         let turns = [b.cross(normal) / length, normal.cross(a) / length];
         normal.is_finite().then_some(Self { normal, turns })
     }
-
-    /// What turns the normal, for each direction (N). Beyond the moment it is that of a chain which lies on itself, and of no use.
-    fn levers(&self, difference: Vec3, moment: f32) -> [f32; 2] {
-        let most = moment.abs();
-        self.turns
-            .map_inline(|turn| (moment * difference.dot(turn)).clamp(-most, most))
-    }
 }
 
 /// The forces of a crease on its particles (N), along the normal where they are.
@@ -326,7 +316,10 @@ fn forces(places: [Vec3; 5], moment: f32, is_cell: bool) -> [Vec3; 5] {
     let Some(frame) = Frame::new(along) else {
         return [Vec3::ZERO; 5];
     };
-    let [a, b] = frame.levers(difference, moment);
+    // What turns the normal, for each direction. Beyond the moment it is that of a chain which lies on itself, and of no use.
+    let most = moment.abs();
+    let lever = |turn: Vec3| (moment * difference.dot(turn)).clamp(-most, most);
+    let [a, b] = frame.turns.map_inline(lever);
     let forces = match is_cell {
         true => [moment + a, b - moment, -b - moment, moment - a, 0.0],
         false => [moment + a, moment - a, -2.0 * moment, b, -b],

@@ -30,9 +30,7 @@ use super::{
     patch::frame,
     push::{LIMIT, largest_bound},
 };
-use crate::cloth::{
-    Block, DX, DY, DZ, LANES, Lanes, Layout, MapInline, StiffnessFactors, Surface, W, Woven,
-};
+use crate::cloth::{Block, LANES, Lanes, Layout, MapInline, Surface, W};
 
 /// The residual that is left, in parts of the first one's (by the norm of the preconditioner).
 const TOLERANCE: f32 = 1.0e-4;
@@ -60,7 +58,7 @@ struct Row {
 #[derive(Debug, Clone)]
 pub(super) struct MeshBending {
     layout: Layout,
-    matrix: Arc<MeshMatrix>,
+    pub matrix: Arc<MeshMatrix>,
     pub creases: Option<Box<MeshCreases>>,
     /// Sum of the absolute values of each particle's row (N/m), by block.
     bounds: Arc<[Lanes]>,
@@ -96,10 +94,6 @@ impl MeshBending {
             places: vec![[Vec4::ZERO; 2]; matrix.len()],
             matrix: Arc::new(matrix),
         }
-    }
-
-    pub fn matrix(&self) -> &MeshMatrix {
-        &self.matrix
     }
 
     pub fn prepare(&mut self, blocks: &[Block], weight: f32) {
@@ -151,9 +145,8 @@ impl MeshBending {
         for run in self.layout.runs() {
             let rows = &self.rows[run.index..][..run.count];
             for (row, block) in rows.iter().zip(&mut blocks[run.block..]) {
-                let moved = block.displacement(run.lane);
                 let given = weight * block.inverse_mass(run.lane) * row.left;
-                block.set_displacement(run.lane, moved + given.truncate());
+                block.displace(run.lane, given.truncate());
             }
         }
     }
@@ -184,10 +177,7 @@ impl MeshBending {
     /// Adds the solution to the displacements.
     fn add(&self, blocks: &mut [Block]) {
         for (row, slot) in self.rows.iter().zip(self.layout.slots()) {
-            let view = blocks[slot.block].view_mut();
-            view[DX + slot.lane] += row.added.x;
-            view[DY + slot.lane] += row.added.y;
-            view[DZ + slot.lane] += row.added.z;
+            blocks[slot.block].displace(slot.lane, row.added.truncate());
         }
     }
 
@@ -246,22 +236,6 @@ impl MeshBending {
             }
         }
         self.push_creases(1.0);
-    }
-
-    /// Lets it crease, or forgets its creases.
-    pub fn set_creasing(
-        &mut self,
-        surface: &Surface,
-        rigidity: Woven,
-        factors: &StiffnessFactors,
-        creases: bool,
-    ) {
-        if creases {
-            let new = || Box::new(MeshCreases::new(surface, rigidity, factors));
-            self.creases.get_or_insert_with(new);
-        } else {
-            self.creases = None;
-        }
     }
 
     /// `left` becomes s times the forces, 0 of pinned particles.

@@ -77,29 +77,22 @@ impl MeshMatrix {
         };
         matrix.first.push(0);
         // Of a row that is copied, the sums lack patches, and are not used.
-        for_each_row(&patches, places.len(), |row, numbers| match with_row(row) {
-            Some(known) => matrix.add_row(known.diagonal[row as usize], known.of(row as usize)),
-            None => matrix.add_sums(row, numbers),
+        for_each_row(&patches, places.len(), |row, numbers| {
+            if let Some(known) = with_row(row) {
+                matrix.diagonal.push(known.diagonal[row as usize]);
+                matrix.entries.extend(known.of(row as usize));
+            } else {
+                let on_it = numbers.iter().find(|(column, _)| *column == row);
+                (matrix.diagonal).push(on_it.map_or(0.0, |(_, number)| *number as f32));
+                let others = numbers.iter().filter(|(column, _)| *column != row);
+                let others = others.map(|(column, number)| (*column, *number as f32));
+                matrix.entries.extend(others);
+            }
+            matrix.first.push(matrix.entries.len() as u32);
         });
         matrix.entries.shrink_to_fit();
         matrix.rest.shrink_to_fit();
         matrix
-    }
-
-    fn add_row(&mut self, diagonal: f32, others: &[(u32, f32)]) {
-        self.diagonal.push(diagonal);
-        self.entries.extend_from_slice(others);
-        self.first.push(self.entries.len() as u32);
-    }
-
-    fn add_sums(&mut self, row: u32, numbers: &[(u32, f64)]) {
-        let on_it = numbers.iter().find(|(column, _)| *column == row);
-        self.diagonal
-            .push(on_it.map_or(0.0, |(_, number)| *number as f32));
-        let others = numbers.iter().filter(|(column, _)| *column != row);
-        let others = others.map(|(column, number)| (*column, *number as f32));
-        self.entries.extend(others);
-        self.first.push(self.entries.len() as u32);
     }
 
     /// Number of particles.

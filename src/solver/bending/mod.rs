@@ -35,7 +35,9 @@ use super::kernels::Kernels;
 use crate::cloth::{Block, ClothMaterial, StiffnessFactors, Surface};
 pub use creasing::ClothCreasing;
 use grid::GridBending;
+use grid_creases::GridCreases;
 use mesh::MeshBending;
+use mesh_creases::MeshCreases;
 use mesh_matrix::{KnownMatrix, MeshMatrix};
 pub(super) use schedule::BendingSchedule;
 pub(crate) use torn_creases::creases_of_torn;
@@ -107,7 +109,7 @@ impl Bending {
             None => {
                 let known = known.and_then(|(known, surface)| {
                     Some(KnownMatrix {
-                        matrix: known.of.mesh()?.matrix(),
+                        matrix: &known.of.mesh()?.matrix,
                         surface,
                         factors: &known.factors,
                     })
@@ -131,7 +133,7 @@ impl Bending {
     #[cfg(test)]
     pub(crate) fn matrix(&self) -> Option<*const f32> {
         let mesh = self.of.mesh()?;
-        Some(mesh.matrix().diagonal.as_ptr())
+        Some(mesh.matrix.diagonal.as_ptr())
     }
 
     /// In one of how many sub-steps of `dt` (s) it needs to bend, for all of them: their weights together leave it soft. For the
@@ -186,11 +188,13 @@ impl Bending {
         creasing: Option<ClothCreasing>,
     ) {
         self.creasing = creasing;
-        let (creases, rigidity) = (creasing.is_some(), material.woven_bending());
         if let (Kind::Grid(grid), Some(of)) = (&mut self.of, surface.as_grid()) {
-            grid.set_creasing(of, creases);
+            let new = || Box::new(GridCreases::new(of, &grid.plate));
+            grid.creases = creasing.map(|_| grid.creases.take().unwrap_or_else(new));
         } else if let Some(mesh) = self.of.mesh_mut() {
-            mesh.set_creasing(surface, rigidity, &self.factors, creases);
+            let rigidity = material.woven_bending();
+            let new = || Box::new(MeshCreases::new(surface, rigidity, &self.factors));
+            mesh.creases = creasing.map(|_| mesh.creases.take().unwrap_or_else(new));
         }
     }
 

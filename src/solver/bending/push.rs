@@ -140,13 +140,9 @@ pub(super) fn largest_bound(blocks: &[Block], bounds: &[Lanes]) -> f32 {
 
 /// Upper bound of the sum of absolute values in a particle's row of K (N/m).
 fn bound(plate: &Plate, row: u32, column: u32) -> f32 {
-    let of = |k: &dyn Fn(u32, u32) -> f32, down: i64, right: i64| {
-        let row = u32::try_from(i64::from(row) + down);
-        let column = u32::try_from(i64::from(column) + right);
-        match (row, column) {
-            (Ok(row), Ok(column)) => k(row, column),
-            _ => 0.0,
-        }
+    let of = |k: &dyn Fn(u32, u32) -> f32, down: i32, right: i32| {
+        let cell = (row.checked_add_signed(down)).zip(column.checked_add_signed(right));
+        cell.map_or(0.0, |(row, column)| k(row, column))
     };
     let across = |right| of(&|row, column| plate.across(row, column), 0, right);
     let down = |down| of(&|row, column| plate.down(row, column), down, 0);

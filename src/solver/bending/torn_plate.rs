@@ -9,7 +9,7 @@ use super::{
     push::{LIMIT, Push, largest_bound},
 };
 use crate::{
-    cloth::{Block, GridStencil, LANES, Lanes, Layout, Slot, StiffnessFactors, Surface},
+    cloth::{Block, LANES, Lanes, Layout, Slot, StiffnessFactors, Surface},
     solver::kernels::{Kernels, Stiffness},
 };
 
@@ -51,16 +51,13 @@ impl TornPlate {
         let mut stiffness = vec![Stiffness::default(); of_grid.blocks()];
         let mut bounds = vec![[0.0; LANES]; layout.blocks()];
         let mut moments = Vec::new();
-        surface.for_each_stencil(|stencil| {
-            // A chain is that of a strip of half the width, on one side of it.
-            let half = |of: [u32; 3]| factors.mean_bending(&of[1..2]) / 2.0;
-            let (kind, at, parts, factor) = match stencil {
-                GridStencil::Across { at, particles: of } => (0, at, chain(of), half(of)),
-                GridStencil::Down { at, particles: of } => (1, at, chain(of), half(of)),
-                GridStencil::Twist { at, particles: of } => {
-                    (2, at, cell(of), factors.mean_bending(&of))
-                }
+        surface.for_each_stencil(|kind, at, of| {
+            let (parts, factor) = match kind {
+                2 => ([1.0, 1.0, -1.0, -1.0], factors.mean_bending(&of)),
+                // A chain is that of a strip of half the width, on one side of it.
+                _ => ([1.0, 1.0, -2.0, 0.0], factors.mean_bending(&of[2..3]) / 2.0),
             };
+            let parts: [(u32, f32); 4] = std::array::from_fn(|place| (of[place], parts[place]));
             let own = plate.inside()[kind] * factor;
             for (particle, part) in parts {
                 let slot = layout.slot_of(particle as usize);
@@ -111,7 +108,7 @@ impl TornPlate {
             for (slot, part) in &moment.parts {
                 let block = &mut blocks[slot.block];
                 let pushed = -part * weight * block.inverse_mass(slot.lane) * moment.value;
-                block.set_displacement(slot.lane, block.displacement(slot.lane) + pushed);
+                block.displace(slot.lane, pushed);
             }
         }
     }
@@ -169,16 +166,6 @@ impl TornBending {
             None => self.plate.apply(blocks, 0.0, weight, kernels),
         }
     }
-}
-
-/// The second difference of three particles in a line.
-fn chain([before, own, after]: [u32; 3]) -> [(u32, f32); 4] {
-    [(before, 1.0), (after, 1.0), (own, -2.0), (own, 0.0)]
-}
-
-/// That of a cell.
-fn cell([a, b, c, d]: [u32; 4]) -> [(u32, f32); 4] {
-    [(a, 1.0), (b, 1.0), (c, -1.0), (d, -1.0)]
 }
 
 #[cfg(test)]

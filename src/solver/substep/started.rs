@@ -101,7 +101,7 @@ impl Solver {
         if let Some(bending) = &self.bending
             && step.order == TimeOrder::Second
             && !step.has_layers
-            && !particles.past_mut().is_ignored()
+            && !particles.past.is_ignored()
         {
             tick.bending = BendingSchedule::new(bending.stride(particles.blocks(), dt));
         }
@@ -119,7 +119,7 @@ impl Solver {
         particles.set_substep(dt);
         particles.zero_pin_displacements();
         if step.order == TimeOrder::First {
-            particles.past_mut().forget(0);
+            particles.past.forget(0);
         }
         // Other causes that turn the cloth are not known here.
         if self.forces.are_none() {
@@ -339,7 +339,7 @@ impl Solver {
         (self.forces).settle(particles, &self.simd_level.kernels());
         if tick.is_explicit {
             put_pins(particles, pins);
-            particles.past_mut().set_moved();
+            particles.past.set_moved();
             let stretch = self.measure(particles);
             return Stretch {
                 material: stretch.structural,
@@ -362,9 +362,9 @@ impl Solver {
         {
             before.limit(particles, step.acceleration);
         } else {
-            particles.past_mut().set_lost(0.0);
+            particles.past.set_lost(0.0);
         }
-        particles.past_mut().set_moved();
+        particles.past.set_moved();
         if let Some(spin) = tick.spin
             && !is_pushed
         {
@@ -373,7 +373,7 @@ impl Solver {
         }
         put_pins(particles, pins);
         if stretch.structural > step.material_stretch + UNSOLVED {
-            particles.past_mut().forget(WARY_TICKS * step.substeps);
+            particles.past.forget(WARY_TICKS * step.substeps);
         }
         stretch
     }

@@ -22,7 +22,7 @@ use super::{
     bound::{Bound, Eight, Frame, write_eights},
     triangles::MeshError,
 };
-use crate::cloth::{lanes::LANES, limits::FARTHEST};
+use crate::cloth::lanes::LANES;
 
 /// The least tangential part of a tangent, as a fraction, for the frame to follow it.
 const LEAST_ALONG: f32 = 0.1;
@@ -49,11 +49,7 @@ impl SurfaceBinding {
         normals: &[Vec3],
         tangents: &[Vec3],
     ) -> Result<Self, MeshError> {
-        let is_beyond = |at: &Vec3| !(at.is_finite() && at.abs().max_element() < FARTHEST);
-        if let Some(vertex) = positions.iter().position(is_beyond) {
-            let position = positions[vertex];
-            return Err(MeshError::VertexNotFinite { vertex, position });
-        }
+        MeshError::check_vertices(positions, Vec3::ONE)?;
         let rest = surface.rest_positions();
         let faces = surface.triangles();
         let mesh = TriMesh::new(rest.to_vec(), faces.to_vec());

@@ -25,8 +25,6 @@ mod split;
 mod springs;
 mod stencils;
 
-pub(crate) use stencils::GridStencil;
-
 use std::sync::{Arc, OnceLock};
 
 #[cfg(feature = "mesh")]
@@ -38,12 +36,15 @@ use bevy::{
 use thiserror::Error;
 
 use super::{
-    Derived, Extent, Faces, Surface, Torn,
+    Derived, Faces, Surface, Torn,
     incidence::Incidence,
     springs::{face_area, sides},
     triangles::VertexAttribute,
 };
-use crate::cloth::{arrays::chosen, grid::ClothGrid};
+use crate::cloth::{
+    arrays::{chosen, distinct},
+    grid::ClothGrid,
+};
 
 /// The reason why a cloth can't be torn.
 #[derive(Reflect, Debug, Clone, PartialEq, Error)]
@@ -296,10 +297,7 @@ impl Torn {
                 ..Derived::default()
             },
         };
-        surface.extent = Extent {
-            pieces: surface.graph().pieces(),
-            ..whole.extent
-        };
+        surface.extent.pieces = surface.graph().pieces();
         surface.rest = surface.parted(&surface.rest, |particle| surface.origin_of(particle));
         surface
     }
@@ -314,10 +312,7 @@ impl Torn {
         let whole = &self.whole;
         let mut areas = whole.areas.clone();
         areas.resize(self.origin.len(), 0.0);
-        let mut split: Vec<u32> = edges.iter().flatten().copied().collect();
-        split.sort_unstable();
-        split.dedup();
-        for particle in split {
+        for particle in distinct(edges.iter().flatten().copied()) {
             areas[particle as usize] = 0.0;
             for &face in whole.incidence().around(particle) {
                 let corners = whole.triangles()[face as usize];

@@ -5,21 +5,14 @@ use crate::cloth::surface::{Surface, Torn, springs::Side};
 /// No face is on that side of an edge.
 const NONE: [u32; 2] = [u32::MAX; 2];
 
-/// Particles of a torn grid that resist bending together. Those that tears made are beyond the particles of the grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum GridStencil {
-    /// Three in a row, in the faces on one side of it.
-    Across { at: u32, particles: [u32; 3] },
-    /// The same in a column.
-    Down { at: u32, particles: [u32; 3] },
-    /// The ends of a cell's diagonal, and its other two corners.
-    Twist { at: u32, particles: [u32; 4] },
-}
-
 impl Surface {
-    /// Calls `visit` with each stencil that tears leave of a grid, and nothing of another surface. `at` is the particle of the whole grid
-    /// in the middle of a chain, or at the corner of a cell with the lowest row and column.
-    pub(crate) fn for_each_stencil(&self, mut visit: impl FnMut(GridStencil)) {
+    /// Calls `visit` with each stencil that tears leave of a grid, and nothing of another surface: particles that resist bending
+    /// together. Those that tears made are beyond the particles of the grid.
+    ///
+    /// Its kind is 0 for three in a row in the faces on one side of it: the two ends, and the middle twice. It is 1 for the same in a
+    /// column, 2 for a cell: the ends of its diagonal, then the other two corners. Next comes a particle of the whole grid, that in
+    /// the middle of a chain, or at the corner of a cell with the lowest row and column.
+    pub(crate) fn for_each_stencil(&self, mut visit: impl FnMut(usize, u32, [u32; 4])) {
         let Some((torn, grid)) = self.torn.as_ref().zip(self.rest_grid()) else {
             return;
         };
@@ -47,31 +40,22 @@ impl Surface {
             {
                 let [from, to] = torn.ends_of(one);
                 let [left, right] = [one, other].map(|side| torn.opposite(side));
-                visit(GridStencil::Twist {
-                    at: row.min(below) * columns + column.min(beside),
-                    particles: [from, to, left, right],
-                });
+                let at = row.min(below) * columns + column.min(beside);
+                visit(2, at, [from, to, left, right]);
             }
         }
         for at in 0..count as u32 {
             let (row, column) = place(at);
-            let chain = |before: [u32; 2], after: [u32; 2]| {
-                let is_whole = before[1] == after[0] && before != NONE;
-                is_whole.then_some([before[0], after[0], after[1]])
-            };
+            let chains = [(&across, column, 1), (&down, row, columns)];
             for side in 0..2 {
-                let edges = |of: &[[[u32; 2]; 2]], step: u32| {
-                    chain(of[(at - step) as usize][side], of[at as usize][side])
-                };
-                if column > 0
-                    && let Some(particles) = edges(&across, 1)
-                {
-                    visit(GridStencil::Across { at, particles });
-                }
-                if row > 0
-                    && let Some(particles) = edges(&down, columns)
-                {
-                    visit(GridStencil::Down { at, particles });
+                for (kind, (of, along, step)) in chains.into_iter().enumerate() {
+                    if along == 0 {
+                        continue;
+                    }
+                    let [before, after] = [at - step, at].map(|at| of[at as usize][side]);
+                    if before[1] == after[0] && before != NONE {
+                        visit(kind, at, [before[0], after[1], after[0], after[0]]);
+                    }
                 }
             }
         }

@@ -11,21 +11,20 @@ use bevy::{
 use parry3d::{math::Pose, shape::SharedShape};
 
 use super::{
-    geometry::ColliderGeometry,
+    geometry::{ColliderGeometry, Parts},
     shape::ColliderShape,
     source::{SharedCollider, Source},
 };
-use crate::cloth::{ClothError, MeshError, QuantityError};
+use crate::cloth::{Allowed, ClothError, MeshError};
 
-/// A [`length`] that errors name as that `of` a shape.
+/// A length under a scale, checked before and after scaling. Errors name it as that `of` a shape.
 macro_rules! length {
-    ($of:literal, $name:literal, $value:expr, $scale:expr) => {
-        length(
-            $value,
-            $scale,
-            [concat!($of, " ", $name), concat!($of, " scaled ", $name)],
-        )
-    };
+    ($of:literal, $name:literal, $value:expr, $scale:expr) => {{
+        let scaled = $value * $scale;
+        Allowed::LENGTH.check(concat!($of, " ", $name), [$value])?;
+        Allowed::LENGTH.check(concat!($of, " scaled ", $name), [scaled])?;
+        scaled
+    }};
 }
 
 /// A collider for cloth at the entity's [`Transform`]. Every cloth collides with it, unless
@@ -228,8 +227,8 @@ impl ClothCollider {
     /// capsule.
     ///
     /// # Errors
-    /// [`QuantityError`] for a length that is zero, negative or not finite, before or after scaling; a capsule's
-    /// length may be zero. [`MeshError::NotLoaded`] for a mesh, because only the plugin can access the assets.
+    /// [`QuantityError`](crate::cloth::QuantityError) for a length that is zero, negative or not finite, before or after
+    /// scaling; a capsule's length may be zero. [`MeshError::NotLoaded`] for a mesh, because only the plugin can access the assets.
     /// Errors of points, triangles, heights or parts.
     pub fn scaled(&self, scale: Vec3) -> Result<ColliderShape, ClothError> {
         let sizes = scale.abs();
@@ -246,37 +245,33 @@ impl ClothCollider {
                 radius,
                 half_height,
             } => {
-                let radius = length!("the cylinder's", "radius (m)", radius, across)?;
+                let radius = length!("the cylinder's", "radius (m)", radius, across);
                 let half_height =
-                    length!("half of the cylinder's", "height (m)", half_height, sizes.y)?;
+                    length!("half of the cylinder's", "height (m)", half_height, sizes.y);
                 convex(Pose::IDENTITY, &SharedShape::cylinder(half_height, radius))
             }
             Self::Cone {
                 radius,
                 half_height,
             } => {
-                let radius = length!("the cone's", "radius (m)", radius, across)?;
-                let half_height =
-                    length!("half of the cone's", "height (m)", half_height, sizes.y)?;
+                let radius = length!("the cone's", "radius (m)", radius, across);
+                let half_height = length!("half of the cone's", "height (m)", half_height, sizes.y);
                 let over = Pose::from_rotation(Quat::from_rotation_x(std::f32::consts::PI));
                 let pose = if scale.y > 0.0 { Pose::IDENTITY } else { over };
                 convex(pose, &SharedShape::cone(half_height, radius))
             }
             Self::Ball { radius } => {
-                let radius = length!("the ball's", "radius (m)", radius, sizes.max_element())?;
+                let radius = length!("the ball's", "radius (m)", radius, sizes.max_element());
                 Ok(ColliderShape::Ball { radius })
             }
             Self::Capsule {
                 radius,
                 half_length,
             } => {
-                let radius = length!("the capsule's", "radius (m)", radius, across)?;
-                let half_length = QuantityError::check(
-                    half_length * sizes.y,
-                    |v| v >= 0.0 && v.is_finite(),
-                    "half of the capsule's scaled length (m)",
-                    "zero or more",
-                )?;
+                let radius = length!("the capsule's", "radius (m)", radius, across);
+                let half_length = half_length * sizes.y;
+                let size = Allowed(|v| v >= 0.0 && v.is_finite(), "zero or more");
+                size.check("half of the capsule's scaled length (m)", [half_length])?;
                 Ok(ColliderShape::Capsule {
                     radius,
                     half_length,
@@ -289,7 +284,7 @@ impl ClothCollider {
                         "length (m)",
                         half_size[axis],
                         sizes[axis]
-                    )?;
+                    );
                 }
                 Ok(ColliderShape::Cuboid {
                     half_size: half_size * sizes,
@@ -300,16 +295,11 @@ impl ClothCollider {
     }
 }
 
-/// A length under a scale, checked before and after scaling. `names` are the names of both.
-fn length(value: f32, scale: f32, names: [&'static str; 2]) -> Result<f32, QuantityError> {
-    let positive = |v: f32| v > 0.0 && v.is_finite();
-    QuantityError::check(value, positive, names[0], "positive")?;
-    QuantityError::check(value * scale, positive, names[1], "positive")
-}
-
 /// A convex shape of parry with a pose.
 fn convex(pose: Pose, shape: &SharedShape) -> Result<ColliderShape, ClothError> {
-    ColliderGeometry::of_parry(pose, shape).map(ColliderShape::Geometry)
+    let mut parts = Parts::default();
+    parts.add(pose, shape)?;
+    Ok(ColliderShape::Geometry(ColliderGeometry::of(parts)))
 }
 
 #[cfg(test)]

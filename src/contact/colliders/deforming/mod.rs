@@ -124,13 +124,18 @@ impl DeformingMesh {
 
     /// The same, and the displacement of that surface in the tick (m).
     pub(crate) fn moving_nearest(&self, part: f32, point: Vec3) -> (Nearest, Vec3) {
-        let Some(on_face) = self.0.nearest_face(part, point) else {
+        let deformed = &*self.0;
+        let Some(on_face) = deformed.nearest_face(part, point) else {
             let distance = f32::NAN;
             let normal = Vec3::Y;
             return (Nearest { distance, normal }, Vec3::ZERO);
         };
-        let nearest = self.0.seen_from(point, part, &on_face);
-        (nearest, self.0.displacement(&on_face))
+        let surface = on_face.place();
+        let out = deformed.out(part, &on_face);
+        let is_inside = out.is_some_and(|out| out.dot(point - surface) < 0.0);
+        let normal = deformed.normal(on_face.corners).normalize_or(Vec3::Y);
+        let nearest = towards(point, surface, is_inside, normal);
+        (nearest, deformed.displacement(&on_face))
     }
 
     /// A lower bound of the distance from the surface, at any time of the tick, of a point that moves by `displacement` in it
@@ -263,14 +268,6 @@ impl Deformed {
         let corners = self.topology.triangles[of.face as usize];
         let moved = corners.map_inline(|corner| to[corner as usize] - from[corner as usize]);
         at(moved, of.weights)
-    }
-
-    fn seen_from(&self, point: Vec3, part: f32, of: &OnFace) -> Nearest {
-        let surface = of.place();
-        let normal = self.normal(of.corners);
-        let out = self.out(part, of);
-        let is_inside = out.is_some_and(|out| out.dot(point - surface) < 0.0);
-        towards(point, surface, is_inside, normal.normalize_or(Vec3::Y))
     }
 
     /// A vector that points out of the surface where a point of it is nearest to others: the normal of a face, the mean of

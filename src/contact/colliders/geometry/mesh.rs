@@ -7,28 +7,13 @@ use super::{
     edges::{MeshEdges, SharpEdge},
     solid::MeshSides,
 };
-use crate::cloth::{FARTHEST, MeshError};
+use crate::cloth::MeshError;
 
 /// Positions of vertices (m), and those of each triangle.
 pub(crate) type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
 
 /// A mesh, its inside, and its sharp edges.
 pub(crate) type Built = (TriMesh, MeshSides, Vec<SharpEdge>);
-
-/// Checks that all vertices are finite and in range.
-///
-/// # Errors
-/// [`MeshError::VertexNotFinite`] for the first invalid one.
-pub(crate) fn check_vertices(vertices: &[Vec3]) -> Result<(), MeshError> {
-    let is_beyond = |vertex: &Vec3| !(vertex.is_finite() && vertex.abs().max_element() < FARTHEST);
-    match vertices.iter().position(is_beyond) {
-        Some(vertex) => Err(MeshError::VertexNotFinite {
-            vertex,
-            position: vertices[vertex],
-        }),
-        None => Ok(()),
-    }
-}
 
 /// Checks that all triangles are of these vertices, and that one of them has an area.
 ///
@@ -38,16 +23,8 @@ pub(in crate::contact::colliders) fn check_triangles(
     vertices: &[Vec3],
     triangles: &[[u32; 3]],
 ) -> Result<(), MeshError> {
-    check_vertices(vertices)?;
-    let count = vertices.len();
-    let is_beyond = |triangle: &[u32; 3]| triangle.iter().any(|&corner| corner as usize >= count);
-    if let Some(triangle) = triangles.iter().position(is_beyond) {
-        return Err(MeshError::TriangleOutOfRange {
-            triangle,
-            corners: triangles[triangle],
-            vertices: count,
-        });
-    }
+    MeshError::check_vertices(vertices, Vec3::ONE)?;
+    MeshError::check_triangles(triangles, vertices.len())?;
     let areas = triangles.iter().map(|triangle| {
         let [a, b, c] = triangle.map(|corner| vertices[corner as usize]);
         (b - a).cross(c - a).length()

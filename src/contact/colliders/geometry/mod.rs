@@ -15,15 +15,10 @@ pub(crate) use edges::SharpEdge;
 use edges::SharpEdges;
 #[cfg(feature = "mesh")]
 pub(super) use mesh::{check_triangles, volume};
-use parry3d::{
-    math::Pose,
-    shape::{Shape, SharedShape},
-};
+use parry3d::{math::Pose, shape::Shape};
 pub(crate) use parts::{Parts, turn_up};
 pub(super) use solid::towards;
 use solid::{Solid, SolidKind};
-
-use crate::cloth::ClothError;
 
 /// A cylinder, cone, convex hull, triangle mesh, height field or compound, scaled, in its own frame, with precomputed
 /// data. Clones share the data. Two geometries are equal if they are clones of each other.
@@ -64,13 +59,6 @@ impl ColliderGeometry {
             bounds: bounds.unwrap_or_default(),
             thickness,
         }))
-    }
-
-    /// A shape of parry with a pose.
-    pub(super) fn of_parry(pose: Pose, shape: &SharedShape) -> Result<Self, ClothError> {
-        let mut parts = Parts::default();
-        parts.add(pose, shape)?;
-        Ok(Self::of(parts))
     }
 
     /// The minimum and maximum corners of its bounding box (m).

@@ -11,7 +11,7 @@ use super::{
     mesh::{self, Triangles},
     solid::{HALF_SHEET, MeshSides, Solid, SolidKind},
 };
-use crate::cloth::{ClothError, ShapeError};
+use crate::cloth::{ClothError, MeshError, ShapeError};
 
 /// Number of flat sides of a round shape for tests against triangles. Its edges lie on the shape, and its flat sides at
 /// most 0.2 % of the radius below.
@@ -82,7 +82,7 @@ impl Parts {
     /// # Errors
     /// [`ShapeError::FlatHull`] of points in one plane, [`MeshError::VertexNotFinite`].
     pub fn add_hull_of(&mut self, points: &[Vec3]) -> Result<(), ClothError> {
-        mesh::check_vertices(points)?;
+        MeshError::check_vertices(points, Vec3::ONE)?;
         let flat = ClothError::Shape(ShapeError::FlatHull {
             points: points.len(),
         });
@@ -91,20 +91,6 @@ impl Parts {
         }
         let hull = parry3d::transformation::try_convex_hull(points).map_err(|_| flat)?;
         self.add_hull(Pose::IDENTITY, hull)
-    }
-
-    /// A convex shape, given by triangles on it or in it, and its radius around those (m).
-    fn add_round(
-        &mut self,
-        pose: Pose,
-        shape: SharedShape,
-        triangles: Triangles,
-        radius: f32,
-    ) -> Result<(), ClothError> {
-        let (.., edges) = mesh::build(triangles, false)?;
-        self.add_solid(pose, SolidKind::Convex(shape));
-        self.add_edges(pose, &edges, radius);
-        Ok(())
     }
 
     fn add_line(&mut self, pose: Pose, shape: SharedShape, ends: [Vec3; 2], radius: f32) {
@@ -144,6 +130,13 @@ impl Parts {
     /// triangles.
     pub fn add(&mut self, pose: Pose, shared: &SharedShape) -> Result<(), ClothError> {
         let shape = shared.clone();
+        // Adds a convex shape, given by triangles on it or in it, and its radius around those (m).
+        let mut round = |inner: Triangles, radius: f32| -> Result<(), ClothError> {
+            let (.., edges) = mesh::build(inner, false)?;
+            self.add_solid(pose, SolidKind::Convex(shared.clone()));
+            self.add_edges(pose, &edges, radius);
+            Ok(())
+        };
         match shared.as_typed_shape() {
             TypedShape::Ball(ball) => self.add_line(pose, shape, [Vec3::ZERO; 2], ball.radius),
             TypedShape::Capsule(capsule) => {
@@ -176,7 +169,7 @@ impl Parts {
                 }
             }
             TypedShape::ConvexPolyhedron(hull) => self.add_hull(pose, hull.to_trimesh())?,
-            TypedShape::Cuboid(cuboid) => self.add_round(pose, shape, cuboid.to_trimesh(), 0.0)?,
+            TypedShape::Cuboid(cuboid) => round(cuboid.to_trimesh(), 0.0)?,
             TypedShape::Cylinder(cylinder) => {
                 let (.., mut edges) = mesh::build(cylinder.to_trimesh(SIDES), false)?;
                 for edge in edges.iter_mut().filter(|edge| is_upright(edge)) {
@@ -190,26 +183,17 @@ impl Parts {
                 self.add_solid(pose, SolidKind::Convex(shape));
                 self.add_edges(pose, &in_pieces(&edges, cone.radius), 0.0);
             }
-            TypedShape::RoundCuboid(round) => {
-                let inner = round.inner_shape.to_trimesh();
-                self.add_round(pose, shape, inner, round.border_radius)?;
+            TypedShape::RoundCuboid(of) => round(of.inner_shape.to_trimesh(), of.border_radius)?,
+            TypedShape::RoundTriangle(of) => {
+                let Triangle { a, b, c } = of.inner_shape;
+                round((vec![a, b, c], vec![[0, 1, 2]]), of.border_radius)?;
             }
-            TypedShape::RoundTriangle(round) => {
-                let Triangle { a, b, c } = round.inner_shape;
-                let inner = (vec![a, b, c], vec![[0, 1, 2]]);
-                self.add_round(pose, shape, inner, round.border_radius)?;
+            TypedShape::RoundCylinder(of) => {
+                round(of.inner_shape.to_trimesh(SIDES), of.border_radius)?;
             }
-            TypedShape::RoundCylinder(round) => {
-                let inner = round.inner_shape.to_trimesh(SIDES);
-                self.add_round(pose, shape, inner, round.border_radius)?;
-            }
-            TypedShape::RoundCone(round) => {
-                let inner = round.inner_shape.to_trimesh(SIDES);
-                self.add_round(pose, shape, inner, round.border_radius)?;
-            }
-            TypedShape::RoundConvexPolyhedron(round) => {
-                let inner = round.inner_shape.to_trimesh();
-                self.add_round(pose, shape, inner, round.border_radius)?;
+            TypedShape::RoundCone(of) => round(of.inner_shape.to_trimesh(SIDES), of.border_radius)?,
+            TypedShape::RoundConvexPolyhedron(of) => {
+                round(of.inner_shape.to_trimesh(), of.border_radius)?;
             }
             TypedShape::Polyline(_) | TypedShape::HalfSpace(_) | TypedShape::Custom(_) => {
                 return Err(ClothError::Shape(ShapeError::NoSuchShape {

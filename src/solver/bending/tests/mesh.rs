@@ -10,7 +10,7 @@ fn expected(bending: &Bending, particles: &ClothParticles, weight: f64) -> [Vec<
     let Kind::Mesh(mesh) = &bending.of else {
         panic!("a mesh's");
     };
-    let mut matrix = mesh.matrix().dense();
+    let mut matrix = mesh.matrix.dense();
     let (masses, places) = start(particles);
     let is_free = |at: usize| masses[at].is_finite();
     let force = |row: &Vec<f64>| -> DVec3 {

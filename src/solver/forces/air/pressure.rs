@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use super::gas::FILLING;
-use crate::cloth::{ClothError, MeshError, QuantityError, Surface};
+use crate::cloth::{Allowed, ClothError, MeshError, Surface};
 
 /// Mean pressure of the air at sea level (Pa), of the International Standard Atmosphere (ISO 2533).
 const ATMOSPHERE: f32 = 101_325.0;
@@ -56,19 +56,17 @@ impl ClothPressure {
     /// Checks that each value is in its range, and that `surface` encloses a volume.
     ///
     /// # Errors
-    /// [`QuantityError`], and [`MeshError::NotClosed`].
+    /// [`QuantityError`](crate::cloth::QuantityError), and [`MeshError::NotClosed`].
     pub fn validate(&self, surface: &Surface) -> Result<(), ClothError> {
         match *self {
             Self::Gauge(pressure) => {
-                let is_moderate = |p: f32| p.abs() <= 1.0e9;
-                let name = "gauge pressure (Pa)";
-                QuantityError::check(pressure, is_moderate, name, "from −10⁹ to 10⁹")?;
+                let moderate = Allowed(|p| p.abs() <= 1.0e9, "from −10⁹ to 10⁹");
+                moderate.check("gauge pressure (Pa)", [pressure])?;
             }
             Self::Gas { volume, outside } => {
-                let is_some = |of: f32| of > 0.0 && of <= 1.0e9;
-                let range = "above 0, up to 10⁹";
-                QuantityError::check(volume, is_some, "volume of the gas (m³)", range)?;
-                QuantityError::check(outside, is_some, "pressure outside (Pa)", range)?;
+                let some = Allowed(|of| of > 0.0 && of <= 1.0e9, "above 0, up to 10⁹");
+                some.check("volume of the gas (m³)", [volume])?;
+                some.check("pressure outside (Pa)", [outside])?;
             }
         }
         if surface.is_closed() {

@@ -114,23 +114,11 @@ impl Lattice {
         let high = particles.positions().fold(Vec3::MIN, Vec3::max);
         let size = high - low;
         let cell = size.max_element() / ALONG_SIDE as f32;
-        let cells = size.to_array().map(|side| {
-            let cells = (side / cell).ceil();
-            // A cloth without a size is one cell.
-            if cells >= 1.0 {
-                (cells as usize).min(ALONG_SIDE)
-            } else {
-                1
-            }
-        });
-        let per_metre = Vec3::from(std::array::from_fn(|axis| {
-            let side = size[axis];
-            if side > 0.0 {
-                cells[axis] as f32 / side
-            } else {
-                0.0
-            }
-        }));
+        // A cloth without a size is one cell.
+        let count = |side: f32| ((side / cell).ceil() as usize).clamp(1, ALONG_SIDE);
+        let cells = size.to_array().map(count);
+        let along = cells.map(|count| count as f32);
+        let per_metre = Vec3::select(size.cmpgt(Vec3::ZERO), Vec3::from(along) / size, Vec3::ZERO);
         Self {
             low,
             cells,
@@ -144,11 +132,8 @@ impl Lattice {
             cells: [x, y, z],
             per_metre,
         } = *self;
-        let cell = Vec3::from(
-            per_metre
-                .to_array()
-                .map(|of| if of > 0.0 { 1.0 / of } else { 0.0 }),
-        );
+        let is_wide = per_metre.cmpgt(Vec3::ZERO);
+        let cell = Vec3::select(is_wide, 1.0 / per_metre, Vec3::ZERO);
         (0..=x).flat_map(move |x| {
             (0..=y).flat_map(move |y| {
                 (0..=z).map(move |z| low + Vec3::new(x as f32, y as f32, z as f32) * cell)
