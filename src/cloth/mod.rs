@@ -81,7 +81,7 @@ pub(crate) use presence::ClothPresence;
 pub(crate) use sewing::{SewnSide, Stitch, stitches};
 pub(crate) use skin::Skinning;
 pub(crate) use springs::{Compliances, SpringList, SpringStorage, StiffnessFactors};
-pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, ShortestPaths};
+pub(crate) use surface::{Chain, Fan, Fans, Flat, Graph, ShortestPaths, StencilKind};
 #[cfg(feature = "mesh")]
 pub(crate) use surface::{JointWeights, add_face_normals, same_places, skin_of_asset};
 pub(crate) use tearing::{Strength, TearSearch};

@@ -59,6 +59,7 @@ pub(crate) use graph::Graph;
 pub(crate) use normals::add_face_normals;
 pub(crate) use paths::ShortestPaths;
 pub(crate) use springs::Link;
+pub(crate) use torn::StencilKind;
 pub(crate) use triangles::JointWeights;
 #[cfg(feature = "mesh")]
 pub(crate) use weld::same_places;

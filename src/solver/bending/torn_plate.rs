@@ -9,7 +9,7 @@ use super::{
     push::{LIMIT, Push, largest_bound},
 };
 use crate::{
-    cloth::{Block, LANES, Lanes, Layout, Slot, StiffnessFactors, Surface},
+    cloth::{Block, LANES, Lanes, Layout, Slot, StencilKind, StiffnessFactors, Surface},
     solver::kernels::{Kernels, Stiffness},
 };
 
@@ -53,19 +53,19 @@ impl TornPlate {
         let mut moments = Vec::new();
         surface.for_each_stencil(|kind, at, of| {
             let (parts, factor) = match kind {
-                2 => ([1.0, 1.0, -1.0, -1.0], factors.mean_bending(&of)),
+                StencilKind::Twist => ([1.0, 1.0, -1.0, -1.0], factors.mean_bending(&of)),
                 // A chain is that of a strip of half the width, on one side of it.
                 _ => ([1.0, 1.0, -2.0, 0.0], factors.mean_bending(&of[2..3]) / 2.0),
             };
             let parts: [(u32, f32); 4] = std::array::from_fn(|place| (of[place], parts[place]));
-            let own = plate.inside()[kind] * factor;
+            let own = plate.inside()[kind as usize] * factor;
             for (particle, part) in parts {
                 let slot = layout.slot_of(particle as usize);
                 bounds[slot.block][slot.lane] += 4.0 * own * part.abs();
             }
             if parts.iter().all(|(particle, _)| *particle < count) {
                 let slot = of_grid.slot_of(at as usize);
-                stiffness[slot.block][kind][slot.lane] += own;
+                stiffness[slot.block][kind as usize][slot.lane] += own;
             } else {
                 moments.push(Moment {
                     parts: parts.map(|(particle, part)| (layout.slot_of(particle as usize), part)),

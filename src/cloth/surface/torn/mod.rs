@@ -25,6 +25,8 @@ mod split;
 mod springs;
 mod stencils;
 
+pub(crate) use stencils::StencilKind;
+
 use std::sync::{Arc, OnceLock};
 
 #[cfg(feature = "mesh")]

@@ -23,7 +23,7 @@ impl Torn {
         }
         // As they came off.
         parts.sort_unstable();
-        for (_, particle, face) in &parts {
+        for Part { particle, face, .. } in &parts {
             let copy = torn.origin.len() as u32;
             torn.origin.push(*particle);
             let of = ends.partition_point(|(end, ..)| end < particle)..;
@@ -40,9 +40,8 @@ impl Torn {
         torn
     }
 
-    /// Finds the parts that come off a particle with one torn edge after the other: the edge whose tear takes each off, the
-    /// particle, and the first of its faces.
-    fn split(&self, edges: &[(u32, usize, u32)], parts: &mut Vec<(usize, u32, u32)>) {
+    /// Finds the parts that come off a particle with one torn edge after the other.
+    fn split(&self, edges: &[(u32, usize, u32)], parts: &mut Vec<Part>) {
         let particle = edges[0].0;
         let mut known: Vec<u32> = (pieces(&self.whole, particle, &[]).into_iter())
             .map(|(_, piece)| piece)
@@ -52,11 +51,25 @@ impl Torn {
             for (_, face) in pieces(&self.whole, particle, &others) {
                 if !known.contains(&face) {
                     known.push(face);
-                    parts.push((edges[count - 1].1, particle, face));
+                    parts.push(Part {
+                        time: edges[count - 1].1,
+                        particle,
+                        face,
+                    });
                 }
             }
         }
     }
+}
+
+/// A part of a particle that came off.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
+    /// The edge whose tear took it off.
+    time: usize,
+    particle: u32,
+    /// The first of its faces.
+    face: u32,
 }
 
 /// The faces at a particle, each with the first face of its piece: faces hang together at edges that are not torn, which

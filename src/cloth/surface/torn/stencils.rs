@@ -5,14 +5,21 @@ use crate::cloth::surface::{Surface, Torn, springs::Side};
 /// No face is on that side of an edge.
 const NONE: [u32; 2] = [u32::MAX; 2];
 
+/// Particles of a torn grid that resist bending together. Those that tears made are beyond the particles of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum StencilKind {
+    /// Three in a row, in the faces on one side of it: both ends, then the middle twice.
+    Across,
+    /// The same in a column.
+    Down,
+    /// The ends of a cell's diagonal, then its other two corners.
+    Twist,
+}
+
 impl Surface {
-    /// Calls `visit` with each stencil that tears leave of a grid, and nothing of another surface: particles that resist bending
-    /// together. Those that tears made are beyond the particles of the grid.
-    ///
-    /// Its kind is 0 for three in a row in the faces on one side of it: the two ends, and the middle twice. It is 1 for the same in a
-    /// column, 2 for a cell: the ends of its diagonal, then the other two corners. Next comes a particle of the whole grid, that in
-    /// the middle of a chain, or at the corner of a cell with the lowest row and column.
-    pub(crate) fn for_each_stencil(&self, mut visit: impl FnMut(usize, u32, [u32; 4])) {
+    /// Calls `visit` with each stencil that tears leave of a grid, and nothing of another surface: its kind, a particle of the whole
+    /// grid, and its own particles. The first is the middle of a chain, or the corner of a cell with the lowest row and column.
+    pub(crate) fn for_each_stencil(&self, mut visit: impl FnMut(StencilKind, u32, [u32; 4])) {
         let Some((torn, grid)) = self.torn.as_ref().zip(self.rest_grid()) else {
             return;
         };
@@ -41,14 +48,17 @@ impl Surface {
                 let [from, to] = torn.ends_of(one);
                 let [left, right] = [one, other].map(|side| torn.opposite(side));
                 let at = row.min(below) * columns + column.min(beside);
-                visit(2, at, [from, to, left, right]);
+                visit(StencilKind::Twist, at, [from, to, left, right]);
             }
         }
         for at in 0..count as u32 {
             let (row, column) = place(at);
-            let chains = [(&across, column, 1), (&down, row, columns)];
+            let chains = [
+                (StencilKind::Across, &across, column, 1),
+                (StencilKind::Down, &down, row, columns),
+            ];
             for side in 0..2 {
-                for (kind, (of, along, step)) in chains.into_iter().enumerate() {
+                for (kind, of, along, step) in chains {
                     if along == 0 {
                         continue;
                     }
