@@ -299,11 +299,10 @@ mod tests {
             source: None,
         };
         let surface = || cloth.surface(Vec3::ONE);
-        let no_factors = |_: &Surface| Ok(Arc::default());
+        let no_factors = |_: &Surface| Ok(MaterialFactors::default());
         let mut parts = SharedParts::default();
-        parts
-            .get(&recipe, material, None, no_factors, surface)
-            .expect("a surface")
+        let found = parts.get(&recipe, material, None, no_factors, surface);
+        found.expect("a surface").0
     }
 
     /// Limits know the mean of a density, in steps of two, and the softest place.

@@ -199,7 +199,10 @@ pub(super) mod tests {
         *,
     };
     use crate::{
-        cloth::{Cloth, ClothParticles, ClothShape, ClothTears, ClothWeft, SpringStorage},
+        cloth::{
+            Cloth, ClothParticles, ClothShape, ClothTears, ClothWeft, MaterialFactors,
+            SpringStorage,
+        },
         meshes::irregular,
         solver::TickStep,
     };
@@ -218,10 +221,17 @@ pub(super) mod tests {
     }
 
     fn get(parts: &mut SharedParts, recipe: &Recipe, (material, factors): &Wanted) -> Arc<Shared> {
-        let of = |_: &Surface| Ok(factors.clone());
+        let of = |_: &Surface| Ok(with(factors));
         let surface = || recipe.surface(&Default::default());
         let found = parts.get(recipe, material, None, of, surface);
-        found.expect("a surface")
+        found.expect("a surface").0
+    }
+
+    fn with(stiffness: &Arc<StiffnessFactors>) -> MaterialFactors {
+        MaterialFactors {
+            stiffness: stiffness.clone(),
+            ..MaterialFactors::default()
+        }
     }
 
     /// A material, and changes of each of its parts and of its factors.
@@ -341,12 +351,12 @@ pub(super) mod tests {
                 for before in &of_first {
                     let before = get(&mut SharedParts::default(), &first, before);
                     let (of, make) = (
-                        |_: &Surface| Ok(wanted.1.clone()),
+                        |_: &Surface| Ok(with(&wanted.1)),
                         || then.surface(&Default::default()),
                     );
                     let taken =
                         SharedParts::default().get(&then, &wanted.0, Some(&before), of, make);
-                    let taken = taken.expect("a surface");
+                    let (taken, _) = taken.expect("a surface");
                     let [taken, new] = [&taken, &new].map(|of| moved(of, &wanted.0));
                     assert_eq!(taken, new, "{counts:?} {wanted:?}");
                 }
