@@ -137,10 +137,14 @@ impl Forces {
         }
         if index.is_multiple_of(self.stride) {
             self.settle(particles, kernels);
+            let (linearized, places) = (&mut self.linearized[..], &mut self.places[..]);
+            // The air writes; forces after it add.
             if let Some(airflow) = &mut self.airflow {
                 let stepped = (self.substep, index.is_multiple_of(self.wind_stride));
-                let (linearized, places) = (&mut self.linearized, &mut self.places);
                 airflow.evaluate(particles, kernels, stepped, linearized, places);
+            } else {
+                linearized.fill(LinearForce::NONE);
+                places.fill([0.0; LANES]);
             }
         }
         self.since += 1;
