@@ -9,14 +9,15 @@ use bevy::{
     ecs::{entity_disabling::Disabled, intern::Interned, schedule::ScheduleLabel},
     prelude::{
         Add, Allow, App, Bundle, Commands, Component, Entity, Insert, IntoScheduleConfigs, Last,
-        On, Plugin, Query, Remove, Time, TransformSystems, With, error, resource_exists,
+        On, Plugin, Query, Remove, SystemCondition, Time, TransformSystems, With,
+        any_with_component, error, resource_exists,
     },
 };
 
 #[cfg(feature = "mesh")]
 use super::prepare::{ChangedMeshes, SharedMeshes, note_changed_meshes};
 use super::{
-    authoring::{self, ClothGravity, ClothOrder, ClothWindZone, give_order},
+    authoring::{self, ClothGrab, ClothGravity, ClothOrder, ClothSeam, ClothWindZone, give_order},
     frame::ClothFrame,
     naming::Part,
     prepare::{
@@ -140,7 +141,12 @@ fn add_resources_and_observers(app: &mut App) {
         .add_observer(forget_stitches)
         .add_observer(forget_collider)
         .add_observer(note_enabled)
-        .add_systems(Last, (note_removals, build_torn_ahead, log_notices));
+        .add_systems(Last, note_removals)
+        .add_systems(
+            Last,
+            build_torn_ahead.run_if(any_with_component::<ClothTears>),
+        )
+        .add_systems(Last, log_notices.run_if(Notices::are_there));
     #[cfg(feature = "mesh")]
     app.init_resource::<SharedMeshes>();
 }
@@ -151,7 +157,17 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
     #[cfg(feature = "mesh")]
     let levels = levels.ambiguous_with(VisibilitySystems::VisibilityPropagate);
     // A hand may be drawn where it was a frame ago, too.
-    let hands = hold_cloths.ambiguous_with(TransformSystems::Propagate);
+    let hands = hold_cloths
+        .run_if(any_with_component::<ClothGrab>)
+        .ambiguous_with(TransformSystems::Propagate);
+    // A cloth that has lost its last `ClothTears` is mended, which is reported, too.
+    let tears = (
+        report_tears,
+        tear_cloths.run_if(any_with_component::<ClothTearing>),
+    )
+        .chain();
+    // Once more after the last one is gone, to wake what it held.
+    let seams = prepare_seams.run_if(any_with_component::<ClothSeam>.or_else(Seams::were_there));
     app.configure_sets(
         schedule,
         (
@@ -175,7 +191,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 prepare_wind,
                 levels,
                 prepare_cloths,
-                prepare_seams,
+                seams,
                 find_islands,
             )
                 .chain()
@@ -195,8 +211,7 @@ fn add_systems(app: &mut App, schedule: Interned<dyn ScheduleLabel>) {
                 report_lost,
                 send_touch_messages,
                 report_limits,
-                report_tears,
-                tear_cloths,
+                tears,
                 log_faults,
             )
                 .chain()

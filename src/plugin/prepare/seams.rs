@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::{
     ecs::query::QueryData,
-    prelude::{Commands, Entity, On, Query, Remove, ResMut, Resource, Vec3, With},
+    prelude::{Commands, Entity, On, Query, Remove, Res, ResMut, Resource, Vec3, With},
 };
 
 use super::{
@@ -50,6 +50,11 @@ pub(crate) struct SeamQuery {
 }
 
 impl Seams {
+    /// Whether there were any in the tick before.
+    pub fn were_there(seams: Res<Self>) -> bool {
+        !seams.active.is_empty()
+    }
+
     /// Whether a cloth is sewn to anything.
     pub fn hold(&self, cloth: Entity) -> bool {
         let mut cloths = self.active.iter().flat_map(|seam| seam.cloths);

@@ -1,6 +1,6 @@
 //! Warnings about cloths that are simulated all the same: each is logged once, by name.
 
-use bevy::prelude::{Entity, Query, ResMut, Resource, warn};
+use bevy::prelude::{Entity, Query, Res, ResMut, Resource, warn};
 
 use crate::plugin::naming::{Named, Part};
 
@@ -12,6 +12,11 @@ impl Notices {
     /// Has a notice of a cloth be logged as the frame ends.
     pub fn add(&mut self, cloth: Entity, text: String) {
         self.0.push((cloth, text));
+    }
+
+    /// Whether there is anything to log.
+    pub fn are_there(notices: Res<Self>) -> bool {
+        !notices.0.is_empty()
     }
 }
 
